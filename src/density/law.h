@@ -1,0 +1,25 @@
+// Radius laws: rho(alpha, i) = r_i^d / r_1^d, i = 1, 2, ... (theory 2). A law is one row of the table
+// in law.c; alpha is mentioned nowhere else.
+#ifndef DENSITY_LAW_H
+#define DENSITY_LAW_H
+
+#include <stdint.h>
+
+struct law {
+  const char *name, *formula, *source;
+  // Closed form, valid for alpha in [0, 1] and i from 1 to 1e15.
+  double (*rho)(double alpha, uint64_t i);
+  // Expected exponents: variance of the average falls as N^-variance_exponent(alpha),
+  // |bias of iteration i| as i^-(2/d) * measure_exponent(alpha), where rho ~ i^-measure_exponent.
+  double (*measure_exponent)(double alpha);
+};
+
+extern const struct law laws[];
+extern const int n_laws;
+
+const struct law *law_find(const char *name); // NULL if unknown
+
+// r_i = r1 rho^(1/d), d in {1, 2, 3}.
+double law_radius(const struct law *, double alpha, double r1, int d, uint64_t i);
+
+#endif

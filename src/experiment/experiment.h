@@ -1,0 +1,77 @@
+// An experiment: a YAML file that holds only what it varies (design, "An experiment file").
+// Every key is a value or a list; lists cross. `parts:` is a list of mappings, each an experiment of
+// its own that inherits the keys above it. `paper:` (at the top or in a part) is a mapping of the
+// keys that quality "paper" replaces. Defaults live in one table (experiment.c), printed by
+// `photonlab list experiment`.
+#ifndef EXPERIMENT_EXPERIMENT_H
+#define EXPERIMENT_EXPERIMENT_H
+
+#include "base/arena.h"
+#include "base/problem.h"
+#include "density/kernel.h"
+#include "density/law.h"
+#include "integrator/integrator.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum direct { DIRECT_PHOTONS, DIRECT_NEE };
+enum quantity { QUANTITY_VARIANCE = 1, QUANTITY_BIAS = 2 }; // bits
+
+struct cell {
+  int number;              // from 0, in the order of the file
+  int part;                // from 0
+  const char *scene_path;
+  const char *scene;       // base name without extension
+  const struct integrator_type *integrator;
+  const struct kernel *kernel;
+  const struct law *law;
+  double alpha;            // in [0, 1]
+  double radius;           // support at i = 1, scene units, > 0
+  uint64_t photons;        // emitted per iteration, >= 1
+  uint64_t iterations, runs; // N >= 1, K >= 1
+  uint64_t seed;
+  struct pixel *probe;     // NULL: default, a fixed 3x3 grid of pixels
+  int n_probes;            // 0: default
+  bool footprint;          // pixel: footprint (true) or centre
+  enum direct direct;
+  int depth;
+  unsigned quantities;     // what is fitted: bits of enum quantity
+  uint64_t *image;         // running averages after these iterations are kept as moment images
+  int n_images;
+  const char *reference_integrator; // "path", "analytic" or "none"
+  double reference_se;     // absolute target standard error of the reference, radiance; 0: none needed
+};
+
+struct experiment {
+  const char *path, *name, *title, *quality; // name: base name without extension
+  struct text_copy {
+    const char *data;
+    ptrdiff_t length;
+  } text;                  // the file's bytes
+  struct cell *cell;
+  int n_cells, n_parts;
+};
+
+// quality: "default" or "paper". Problems carry file:line:column; duplicate keys, unknown keys,
+// values out of range, NaN are problems.
+bool experiment_read(const char *path, const char *quality, struct arena *, struct experiment *,
+                     struct problem *);
+
+// Cells whose photon and eye paths are the same (scene, photons, depth, direct, seed, runs,
+// iterations, probes, footprint, images, integrator): they share one photon pass. Formed from the
+// experiment alone, in the order of the first cell of each.
+struct group {
+  int *cell;
+  int n_cells;
+};
+struct group *experiment_groups(const struct experiment *, struct arena *, int *n_groups);
+
+// The table of keys (name, default, meaning), for `photonlab list experiment`.
+struct experiment_key {
+  const char *name, *fallback, *meaning;
+};
+extern const struct experiment_key experiment_keys[];
+extern const int n_experiment_keys;
+
+#endif
