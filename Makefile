@@ -1,0 +1,167 @@
+# make help lists the targets. Everything made is under build/ and results/.
+MAKEFLAGS += -rR --no-print-directory
+.SUFFIXES:
+.DELETE_ON_ERROR:
+SHELL = /bin/sh
+
+# ---- what the user may set ----
+BUILD = release# release | debug | asan | tsan
+OPT.release = -O2
+OPT.debug = -Og
+OPT.asan = -O1
+OPT.tsan = -O1
+OPT = $(OPT.$(BUILD))
+CFLAGS_EXTRA =
+INSTALL = yes# no: never call apt-get
+QUALITY = default# of an experiment: default | paper
+PREFIX = /usr/local
+DESTDIR =
+V =# 1 shows the commands
+
+ifneq ($(filter default undefined,$(origin CC)),)
+CC := $(if $(filter tsan,$(BUILD)),clang,gcc)
+endif
+AR = ar
+ifeq ($(filter $(BUILD),release debug asan tsan),)
+$(error BUILD=$(BUILD): one of release, debug, asan, tsan)
+endif
+
+# ---- flags ----
+FLAGS.release =
+FLAGS.debug = -DASSERT_HOT
+FLAGS.asan = -DASSERT_HOT -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+FLAGS.tsan = -fsanitize=thread -fno-omit-frame-pointer
+# No contraction and no builtins: the same bits from every compiler and level. No -march either.
+CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
+  -ffp-contract=off -fno-builtin -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
+CPPFLAGS := -Isrc -I.
+LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -lz -lm
+
+# ---- files ----
+out := build/$(BUILD)
+gen := $(out)/gen
+layers := $(shell cat src/ORDER)
+folder = $(if $(filter analysis,$1),analysis,src/$1)
+sources := $(foreach layer,$(layers),$(sort \
+  $(foreach depth,*.c */*.c */*/*.c,$(wildcard $(call folder,$(layer))/$(depth)))))
+object = $(patsubst %.c,$(out)/obj/%.o,$1)
+main := src/app/main.c
+objects := $(call object,$(filter-out $(main),$(sources)))
+library := $(out)/libphotonlab.a
+binary := $(if $(filter release,$(BUILD)),build/photonlab,$(out)/photonlab)
+test_sources := $(sort $(wildcard tests/unit/*.c tests/statistical/*.c))
+test_programs := $(test_sources:tests/%.c=$(out)/tests/%)
+cli_tests := $(filter-out tests/cli/lib.sh,$(sort $(wildcard tests/cli/*.sh)))
+
+quiet = $(if $(V),,@printf '  %-4s %s\n' $1 $2;)
+# Replaces $@ by what the recipe wrote to $@.new, only if it differs.
+define keep
+cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+endef
+
+.PHONY: all FORCE
+all: $(binary)
+
+# ---- set-up: what is missing is installed once ----
+clang := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),clang)
+cc_name := $(subst /,_,$(subst $() ,_,$(CC)))
+packages_build := build/packages/$(cc_name).build
+packages_test := build/packages/$(cc_name).test
+
+$(packages_build): build/packages/$(cc_name).%: packages install-packages
+	@mkdir -p $(@D)
+	@CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages build $(clang)
+	@echo 'int main(void) { return 0; }' | $(CC) -fopenmp -x c - -o $@ || \
+	  { echo 'photonlab: $(CC) has no OpenMP run time (Debian, clang: apt-get install libomp-dev)' >&2; exit 1; }
+
+$(packages_test): packages install-packages | $(packages_build)
+	@CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages test
+	@touch $@
+
+# ---- generated: flags, list of objects, slots, version ----
+$(gen):
+	@mkdir -p $@
+
+$(gen)/flags: FORCE | $(gen)
+	@echo '$(CC) $(CFLAGS) $(LDLIBS)' >$@.new; $(keep)
+
+$(gen)/objects: FORCE | $(gen)
+	@printf '%s\n' $(objects) >$@.new; $(keep)
+
+# A slot is a file in one of these folders; $(call slots,FOLDER) are the names in it.
+slots = $(subst -,_,$(notdir $(basename $(sort $(wildcard $1/*.c)))))
+define slot_table
+  for name in $(call slots,$2); do echo "extern const struct $1_type $1_$$name;"; done; \
+  echo "const struct $1_type *const $1_types[] = {"; \
+  for name in $(call slots,$2); do echo "    &$1_$$name,"; done; \
+  echo "    NULL};"
+endef
+define integrator_find
+
+const struct integrator_type *integrator_find(const char *name) {
+  for (int i = 0; integrator_types[i]; i++)
+    if (!strcmp(integrator_types[i]->name, name)) return integrator_types[i];
+  return NULL;
+}
+endef
+export integrator_find
+
+$(gen)/slots.c: FORCE | $(gen)
+	@{ echo '// Written by the build from the names of the slot files.'; \
+	echo '#include "integrator/integrator.h"'; echo '#include <string.h>'; \
+	$(call slot_table,shape,src/scene/shape); \
+	$(call slot_table,light,src/scene/light); \
+	$(call slot_table,material,src/scene/material); \
+	$(call slot_table,integrator,src/integrator); \
+	echo "$$integrator_find"; } >$@.new; $(keep)
+
+version = $(shell git describe --always --dirty --tags 2>/dev/null || cat VERSION 2>/dev/null || echo unknown)
+c_string = "$(subst ",\",$(subst \,\\,$1))"
+define version_c
+// Written by the build.
+#include "base/version.h"
+const char photonlab_version[] = $(call c_string,$(version));
+const char photonlab_compiler[] = $(call c_string,$(shell $(CC) --version 2>/dev/null | head -n 1));
+const char photonlab_flags[] = $(call c_string,$(CFLAGS));
+endef
+
+$(gen)/version.c: FORCE | $(gen)
+	$(file >$@.new,$(version_c))@$(keep)
+
+# ---- compile and link ----
+generated := $(gen)/slots.o $(gen)/version.o
+$(generated): %.o: %.c $(gen)/flags | $(packages_build)
+	@$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+$(call object,$(sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_build)
+	@mkdir -p $(@D)
+	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+$(library): $(objects) $(gen)/slots.o $(gen)/objects
+	@rm -f $@
+	$(call quiet,AR,$@)$(AR) rcs $@ $(filter %.o,$^)
+
+$(binary): $(call object,$(main)) $(gen)/version.o $(library)
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) $^ $(LDLIBS) -o $@
+
+# The version changes with every commit: tests carry it, but are not linked again for it.
+$(test_programs): $(out)/tests/%: $(out)/obj/tests/%.o $(library) | $(gen)/version.o
+	@mkdir -p $(@D)
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) $^ $| $(LDLIBS) -lcmocka -o $@
+
+$(call object,$(test_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_test)
+	@mkdir -p $(@D)
+	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+-include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources)) $(generated))
+
+# ---- tests ----
+.PHONY: test test-asan test-tsan test-plants test-programs
+test-programs: $(test_programs)
+
+test: $(binary) $(test_programs)
+	@PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(test_programs) $(cli_tests)
+
+.PHONY: clean
+clean:
+	rm -rf build
