@@ -9,6 +9,7 @@
 #include "density/kernel.h"
 #include "density/law.h"
 #include "scene/scene.h"
+#include "scene/skip.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,6 +29,8 @@ struct measurement {
   struct features features;
   const struct pixel *pixel; // [n_points] what is measured: a few probes or a whole image
   int n_points;
+  int n_replicas;           // path: this many points in a row are samples of one pixel, each with
+                            // random numbers of its own; at least 1
   bool footprint;           // a new uniform position in the pixel each iteration, else its centre
   bool nee;                 // direct light by next-event estimation instead of photons
   int depth;                // pbrt's maxdepth
@@ -35,6 +38,7 @@ struct measurement {
   uint64_t seed;
   const struct estimator *estimator;
   int n_estimators;
+  unsigned skip_off;        // bits of enum skip: what is not to be skipped
 };
 
 struct integrator_type {

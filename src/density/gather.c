@@ -1,0 +1,71 @@
+#include "density/gather.h"
+
+#include "numeric/sum.h"
+
+struct disc disc_of(const struct kernel *kernel, double r, uint64_t n_emitted) {
+  return (struct disc){kernel, r, kernel->constants(2).c / (r * r * (double)n_emitted)};
+}
+
+static void gather_reserve(struct gather *gather, int64_t count, int n_channels,
+                           struct arena *arena) {
+  if (count <= gather->capacity) return;
+  gather->capacity = 2 * count;
+  gather->photon = arena_new(arena, uint32_t, gather->capacity);
+  gather->distance2 = arena_new(arena, double, gather->capacity);
+  gather->t2 = arena_new(arena, double, gather->capacity);
+  gather->weight = arena_new(arena, double, gather->capacity);
+  for (int c = 0; c < n_channels; c++)
+    gather->value[c] = arena_new(arena, double, gather->capacity);
+}
+
+// Keeps the photons on the eye's side, with f * flux of each.
+static int weigh(struct gather *gather, const struct scene *scene, const struct photons *photons,
+                 const struct eye_point *point, int found) {
+  const struct material *material = scene_material(scene, &point->surface);
+  int kept = 0;
+  for (int j = 0; j < found; j++) {
+    uint32_t photon = gather->photon[j];
+    struct vec wi = photons->wi[photon];
+    if (!(vec_dot(wi, point->n) > 0)) continue;
+    double f[3];
+    material->type->value(material, &point->surface, point->wo, wi, f);
+    gather->distance2[kept] = gather->distance2[j];
+    for (int c = 0; c < photons->n_channels; c++)
+      gather->value[c][kept] = f[c] * photons->flux[c][photon];
+    kept++;
+  }
+  return kept;
+}
+
+// weight[j] = psi(d_j / r) / c, zero outside the disc.
+static void evaluate(struct gather *gather, const struct disc *disc, int n) {
+  double inverse_r2 = 1 / (disc->r * disc->r);
+  for (int j = 0; j < n; j++) {
+    double t2 = gather->distance2[j] * inverse_r2;
+    gather->t2[j] = t2 < 1 ? t2 : 0;
+  }
+  disc->kernel->shape(gather->t2, gather->weight, n);
+  for (int j = 0; j < n; j++)
+    gather->weight[j] = gather->distance2[j] * inverse_r2 < 1 ? gather->weight[j] : 0;
+}
+
+static double weighted_sum(const double *weight, const double *value, int n) {
+  double lane[SUM_LANES] = {0};
+  for (int j = 0; j < n; j++) lane[j % SUM_LANES] += weight[j] * value[j];
+  return sum_lanes(lane);
+}
+
+void gather_point(struct gather *gather, const struct scene *scene, const struct photons *photons,
+                  const struct grid *grid, const struct eye_point *point, const struct disc *disc,
+                  int n_discs, double *out, long stride, struct arena *arena) {
+  gather_reserve(gather, grid->count, photons->n_channels, arena);
+  int found = grid_find(grid, point->surface.p, gather->photon, gather->distance2);
+  int n = weigh(gather, scene, photons, point, found);
+  if (n == 0) return;
+  for (int e = 0; e < n_discs; e++) {
+    evaluate(gather, &disc[e], n);
+    for (int c = 0; c < photons->n_channels; c++)
+      out[e * stride + c] +=
+          point->weight[c] * (disc[e].scale * weighted_sum(gather->weight, gather->value[c], n));
+  }
+}

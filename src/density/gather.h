@@ -1,0 +1,33 @@
+// The density estimate at eye points, for all estimators of a group at once (theory 1.1):
+//   L_r(x) = 1/n_emitted * sum over photons p of k_r(x_p - x) f(wo, wi_p) flux_p.
+// A photon counts iff it is within the 3D distance r and arrived on the side of the hit's geometric
+// normal from which the eye looks; no other test.
+#ifndef DENSITY_GATHER_H
+#define DENSITY_GATHER_H
+
+#include "density/grid.h"
+#include "density/kernel.h"
+#include "walk/eye.h"
+
+// One estimator at this iteration.
+struct disc {
+  const struct kernel *kernel;
+  double r;     // support
+  double scale; // c / (r^2 n_emitted), c = psi(0)
+};
+struct disc disc_of(const struct kernel *, double r, uint64_t n_emitted);
+
+// Scratch for queries on grids of up to `capacity` photons.
+struct gather {
+  int64_t capacity;
+  uint32_t *photon;
+  double *distance2, *t2, *weight, *value[3];
+};
+
+// Adds to out[disc * stride + c] the radiance towards the eye at `point`. The grid's r is at least
+// every disc's. Sums have the shape of numeric/sum.h over the photons found within the grid's r.
+void gather_point(struct gather *, const struct scene *, const struct photons *,
+                  const struct grid *, const struct eye_point *, const struct disc *, int n_discs,
+                  double *out, long stride, struct arena *);
+
+#endif

@@ -1,0 +1,26 @@
+// What a scene does not need is skipped, and no bit of the result changes (design 6). Each skip has a
+// name, so that `--no-skip=NAME` can switch it off and a test can compare the bytes.
+#ifndef SCENE_SKIP_H
+#define SCENE_SKIP_H
+
+#include "base/problem.h"
+
+enum skip {
+  SKIP_GRAY = 1,       // carrying three channels where all spectra are gray
+  SKIP_STATIC_EYE = 2, // tracing the eye pass again where nothing at the camera is random
+  SKIP_UNSEEN = 4,     // storing photons in grid cells that no point can see
+  SKIP_PROBES = 8,     // computing pixels nobody asked for
+};
+
+struct skip_row {
+  const char *name;
+  enum skip bit;
+  const char *about;
+};
+extern const struct skip_row skip_rows[];
+extern const int n_skip_rows;
+
+// "all" or names separated by commas; sets the bits of what is not to be skipped.
+bool skip_read(const char *names, unsigned *off, struct problem *);
+
+#endif

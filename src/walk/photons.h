@@ -1,0 +1,34 @@
+// The photon pass: paths from the lights, stored where they meet surfaces.
+#ifndef WALK_PHOTONS_H
+#define WALK_PHOTONS_H
+
+#include "walk/walk.h"
+
+// Stored photons in the order of (batch, vertex, path), which no thread count can change.
+struct photons {
+  int64_t count, capacity;
+  int n_channels;
+  struct vec *position;
+  struct vec *wi;  // towards where it came from, unit length
+  double *flux[3]; // W, not divided by n_emitted
+};
+
+struct photon_pass {
+  uint64_t n_emitted;
+  int depth;         // pbrt's maxdepth: the most scatterings, the one towards the eye included
+  int first_vertex;  // 1: the first surface is left to next-event estimation; else 0
+};
+
+// Which photons are worth storing (NULL: all). A pure function of the position that keeps every
+// photon anybody can see: what it drops changes no estimate.
+struct photon_filter {
+  bool (*keep)(const void *data, struct vec p);
+  const void *data;
+};
+
+// One pass: walk->key and walk->iteration are set by the caller; photons is emptied first
+// and grows in the arena. Zeroed photons are ready for use.
+void photons_trace(struct walk *, const struct photon_pass *, const struct photon_filter *,
+                   struct photons *, struct arena *);
+
+#endif
