@@ -1,0 +1,109 @@
+// What the lights share: reading with checks, and the two samplings each of them is made of.
+#ifndef SCENE_LIGHT_LIGHT_H
+#define SCENE_LIGHT_LIGHT_H
+
+#include "numeric/elementary.h"
+#include "scene/read.h"
+
+#include <string.h>
+
+static const double light_pi = 0x1.921fb54442d18p+1;
+
+// ---- reading ----
+
+static inline bool light_given(const struct params *params, const char *type, const char *name) {
+  for (int i = 0; i < params->count; i++)
+    if (!strcmp(params->item[i].name, name) && !strcmp(params->item[i].type, type)) return true;
+  return false;
+}
+
+// A float that must be greater than zero.
+static inline double light_positive(struct params *params, const char *name, double fallback) {
+  double value = params_float(params, name, fallback);
+  if (value <= 0) params_complain(params, name, "\"%s\" must be greater than zero", name);
+  return value;
+}
+
+static inline double light_scale(struct params *params) {
+  double scale = params_float(params, "scale", 1);
+  if (scale < 0) params_complain(params, "scale", "\"scale\" must not be negative");
+  return scale;
+}
+
+// value = rgb `name` (1 1 1 if absent) times `scale`, neither negative.
+static inline void light_spectrum(struct params *params, const char *name, double value[3]) {
+  value[0] = value[1] = value[2] = 1;
+  params_rgb(params, name, value);
+  double scale = light_scale(params);
+  for (int c = 0; c < 3; c++) {
+    if (value[c] < 0) params_complain(params, name, "\"%s\" must not be negative", name);
+    value[c] *= scale;
+  }
+}
+
+// pbrt-v4 takes a `power` or `illuminance` of zero or less as absent; here it is an error, so that
+// no file means two things. 1 if absent, else the value / divisor.
+static inline double light_total(struct params *params, const char *name, double divisor) {
+  return light_given(params, "float", name) ? light_positive(params, name, 1) / divisor : 1;
+}
+
+// `from` in world space and the unit vector from there to `to`.
+static inline void light_from_to(struct scene_builder *builder, struct params *params,
+                                 struct vec *from, struct vec *axis) {
+  struct vec start = params_point3(params, "from", vec(0, 0, 0));
+  struct vec end = params_point3(params, "to", vec(0, 0, 1));
+  struct vec along = transform_direction(&builder->world_from_object, vec_sub(end, start));
+  double length = vec_length(along);
+  if (!(length > 0 && isfinite(length)))
+    params_complain(params, "to", "\"from\" and \"to\" give no direction");
+  *from = transform_point(&builder->world_from_object, start);
+  *axis = vec_normalize(along);
+}
+
+// The last words of every `read`: large numbers may have multiplied to infinity.
+static inline bool light_finish(struct params *params, const struct light *light) {
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(light->power[c])) params_complain(params, "scale", "the power is not finite");
+  return params_finish(params);
+}
+
+static inline bool light_is_gray(const struct light *light) {
+  return light->power[0] == light->power[1] && light->power[1] == light->power[2];
+}
+
+// ---- sampling ----
+
+// Uniform on the unit disc: radius sqrt(u0), angle 2 pi u1.
+static inline void light_sample_disc(double u0, double u1, double *x, double *y) {
+  double sine, cosine, radius = sqrt(u0);
+  num_sincos_turns(u1, &sine, &cosine);
+  *x = radius * cosine;
+  *y = radius * sine;
+}
+
+// pdf_solid_angle = cos / pi around the unit vector n (Malley: a point of the disc, lifted).
+static inline struct vec light_sample_cosine(struct vec n, double u0, double u1) {
+  struct vec s, t;
+  double x, y;
+  vec_basis(n, &s, &t);
+  light_sample_disc(u0, u1, &x, &y);
+  return vec_along(vec_along(vec_scale(n, sqrt(1 - u0)), s, x), t, y);
+}
+
+// No ray finds a delta light by chance.
+static inline double light_pdf_delta(const struct scene *scene, const struct light *light,
+                                     struct vec p, const struct surface *surface, struct vec wi) {
+  (void)scene, (void)light, (void)p, (void)surface, (void)wi;
+  return 0;
+}
+
+// ---- closed forms ----
+
+// How far from p, within the plane with normal n, is the plane with normal `axis` at distance
+// `height` from p? INFINITY if they are parallel.
+static inline double light_distance_in_plane(double height, struct vec axis, struct vec n) {
+  double sine = vec_length(vec_cross(axis, n));
+  return sine > 0 ? fabs(height) / sine : INFINITY;
+}
+
+#endif
