@@ -1,0 +1,96 @@
+// Ray and triangle, watertight (after Woop, Benthin, Wald 2013, in double).
+// The vertices, relative to the origin, are sheared along the ray onto a plane across it: each
+// becomes two doubles (x, y) that depend on the vertex and the ray alone, and the ray becomes (0,
+// 0). The triangle accepts if the edge functions ax*by - ay*bx of its three edges have one sign or
+// are zero. Rounding is monotone, so if ax*by > ay*bx exactly, the rounded difference is never
+// negative (as long as nothing is fused): a computed sign is right or zero, and zero accepts. Hence
+// a triangle whose projected vertices enclose (0, 0) is never missed, and as neighbours share these
+// vertices, no ray slips between them, at an edge or at a vertex. Two-sided.
+#ifndef SCENE_SHAPE_TRIANGLE_H
+#define SCENE_SHAPE_TRIANGLE_H
+
+#include "scene/shape/clip.h"
+
+struct shear {
+  double o[3];
+  int x, y, z;             // z: the axis of the largest |d|
+  double along_x, along_y; // d[x] / d[z], d[y] / d[z]
+};
+
+static inline struct shear shear_of(const struct ray *ray) {
+  const double d[3] = {ray->d.x, ray->d.y, ray->d.z};
+  int z = cone_abs(d[0]) > cone_abs(d[1]) ? 0 : 1;
+  if (cone_abs(d[2]) > cone_abs(d[z])) z = 2;
+  int x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+  return (struct shear){{ray->o.x, ray->o.y, ray->o.z}, x, y, z, d[x] / d[z], d[y] / d[z]};
+}
+
+// Whether the ray's line passes through the triangle of these vertices.
+static inline bool triangle_accepts(const struct shear *s, const float vertex[3][3]) {
+  double x[3], y[3];
+  for (int i = 0; i < 3; i++) {
+    double z = (double)vertex[i][s->z] - s->o[s->z];
+    x[i] = ((double)vertex[i][s->x] - s->o[s->x]) - s->along_x * z;
+    y[i] = ((double)vertex[i][s->y] - s->o[s->y]) - s->along_y * z;
+  }
+  double e0 = x[1] * y[2] - y[1] * x[2];
+  double e1 = x[2] * y[0] - y[2] * x[0];
+  double e2 = x[0] * y[1] - y[0] * x[1];
+  return (e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0);
+}
+
+static inline struct vec triangle_vertex(const float vertex[3]) {
+  return vec((double)vertex[0], (double)vertex[1], (double)vertex[2]);
+}
+
+// (p0 - p2) x (p1 - p2): pbrt's normal, of length twice the area.
+static inline struct vec triangle_cross(const float vertex[3][3]) {
+  struct vec p2 = triangle_vertex(vertex[2]);
+  return vec_cross(vec_sub(triangle_vertex(vertex[0]), p2),
+                   vec_sub(triangle_vertex(vertex[1]), p2));
+}
+
+static inline struct box triangle_box(const float vertex[3][3]) {
+  struct box box;
+  for (int k = 0; k < 3; k++) {
+    float a = vertex[0][k], b = vertex[1][k], c = vertex[2][k];
+    float lo = a < b ? a : b, hi = a < b ? b : a;
+    box.lo[k] = c < lo ? c : lo;
+    box.hi[k] = c > hi ? c : hi;
+  }
+  return box;
+}
+
+// t of an accepted triangle, from its plane. A triangle seen edge-on or without area is never hit:
+// there n . d == 0 and t is not finite (clip_accept rejects NaN, its clip clamps no infinity).
+static inline bool triangle_distance(const struct cone *cone, const struct ray *ray,
+                                     const float vertex[3][3], double *t) {
+  struct vec n = triangle_cross(vertex);
+  double facing = vec_dot(n, ray->d);
+  if (facing == 0) return false;
+  *t = vec_dot(n, vec_sub(triangle_vertex(vertex[0]), ray->o)) / facing;
+  if (!(*t < INFINITY)) return false;
+  struct box box = triangle_box(vertex);
+  return clip_accept(cone, &box, ray->t_max, t);
+}
+
+// The vertices of a primitive.
+static inline void triangle_gather(const struct scene *scene, const struct shape *shape,
+                                   uint32_t primitive, float vertex[3][3]) {
+  const uint32_t *row = scene->triangle[shape->local + (primitive - shape->first)];
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) vertex[i][k] = scene->position[row[i]][k];
+}
+
+// shape_type.intersect of every shape made of triangles.
+static inline bool triangle_intersect(const struct scene *scene, const struct shape *shape,
+                                      uint32_t primitive, const struct ray *ray, double *t) {
+  if (ray->leaving == primitive) return false;
+  float vertex[3][3];
+  triangle_gather(scene, shape, primitive, vertex);
+  struct shear shear = shear_of(ray);
+  struct cone cone = cone_of(ray);
+  return triangle_accepts(&shear, vertex) && triangle_distance(&cone, ray, vertex, t);
+}
+
+#endif
