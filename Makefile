@@ -1,5 +1,8 @@
-# make help lists the targets. Everything made is under build/ and results/.
+# `make help` lists the targets. Everything made goes to build/ and results/.
 MAKEFLAGS += -rR --no-print-directory
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 1)# a -j of the command line wins
+endif
 .SUFFIXES:
 .DELETE_ON_ERROR:
 SHELL = /bin/sh
@@ -42,8 +45,8 @@ out := build/$(BUILD)
 gen := $(out)/gen
 layers := $(shell cat src/ORDER)
 folder = $(if $(filter analysis,$1),analysis,src/$1)
-sources := $(foreach layer,$(layers),$(sort \
-  $(foreach depth,*.c */*.c */*/*.c,$(wildcard $(call folder,$(layer))/$(depth)))))
+files = $(sort $(wildcard $1/*.c $1/*/*.c $1/*/*/*.c))
+sources := $(foreach layer,$(layers),$(call files,$(call folder,$(layer))))
 object = $(patsubst %.c,$(out)/obj/%.o,$1)
 main := src/app/main.c
 objects := $(call object,$(filter-out $(main),$(sources)))
@@ -115,7 +118,7 @@ $(gen)/slots.c: FORCE | $(gen)
 	$(call slot_table,integrator,src/integrator); \
 	echo "$$integrator_find"; } >$@.new; $(keep)
 
-version = $(shell git describe --always --dirty --tags 2>/dev/null || cat VERSION 2>/dev/null || echo unknown)
+version = $(shell cat VERSION 2>/dev/null || git describe --always --dirty --tags 2>/dev/null || echo unknown)
 c_string = "$(subst ",\",$(subst \,\\,$1))"
 define version_c
 // Written by the build.
@@ -156,12 +159,79 @@ $(call object,$(test_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_te
 -include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources)) $(generated))
 
 # ---- tests ----
-.PHONY: test test-asan test-tsan test-plants test-programs
+.PHONY: test test-programs test-asan test-tsan test-plants validate
 test-programs: $(test_programs)
 
 test: $(binary) $(test_programs)
 	@PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(test_programs) $(cli_tests)
 
-.PHONY: clean
+# Sanitizers make a program slow: a tenth of the samples. The statistical tests keep their level.
+sanitized = PHOTONLAB_TEST_SAMPLES=0.1 tests/run $(test_sources:tests/%.c=build/$1/tests/%)
+test-asan:
+	@$(MAKE) BUILD=asan test-programs
+	@$(call sanitized,asan)
+
+# libomp tells the sanitizer of its barriers through archer; without it every one is a false race.
+test-tsan:
+	@$(MAKE) BUILD=tsan test-programs
+	@OMP_TOOL_LIBRARIES="$$(clang -print-file-name=libarcher.so)" \
+	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(call sanitized,tsan)
+
+test-plants:
+	@tests/plants/run
+
+validate: $(binary)
+	$(binary) validate
+
+# ---- experiments ----
+# make experiment-NAME runs experiments/NAME.yaml, fits and plots it into results/NAME.
+experiments := $(patsubst experiments/%.yaml,experiment-%,$(sort $(wildcard experiments/*.yaml)))
+RESULTS = results/$*
+
+.PHONY: $(experiments)
+$(experiments): experiment-%: $(binary)
+	$(binary) run experiments/$*.yaml -o $(RESULTS) --quality $(QUALITY)
+	$(binary) fit $(RESULTS)
+	$(binary) plot $(RESULTS)
+
+experiment-%:
+	@echo 'photonlab: there is no experiments/$*.yaml; there are: $(experiments)' >&2; exit 1
+
+# ---- install, distribute ----
+share = $(DESTDIR)$(PREFIX)/share
+
+.PHONY: install uninstall dist clean help
+install: $(binary)
+	install -d $(DESTDIR)$(PREFIX)/bin $(share)/man/man1 $(share)/photonlab
+	install -m 755 $(binary) $(DESTDIR)$(PREFIX)/bin/photonlab
+	install -m 644 src/app/photonlab.1 $(share)/man/man1/photonlab.1
+	cp -R scenes experiments paper-figures $(share)/photonlab
+
+uninstall:
+	rm -f $(DESTDIR)$(PREFIX)/bin/photonlab $(share)/man/man1/photonlab.1
+	rm -rf $(share)/photonlab
+
+# What is committed, and a file VERSION in place of the history.
+dist: name = photonlab-$(shell git describe --always --tags)
+dist:
+	@mkdir -p build
+	@git describe --always --tags >build/VERSION
+	git archive --prefix=$(name)/ --add-file=build/VERSION -o build/$(name).tar.gz HEAD
+
 clean:
 	rm -rf build
+
+help:
+	@echo 'make                   build/photonlab; installs Debian packages that are missing'
+	@echo 'make test              all tests: N passed, N failed'
+	@echo 'make test-asan         unit and statistical tests under address and undefined sanitizers'
+	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
+	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
+	@echo 'make validate          the built-in checks against closed forms'
+	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
+	@for name in $(experiments); do echo "                         $$name"; done
+	@echo 'make install           PREFIX=/usr/local DESTDIR='
+	@echo 'make uninstall | dist | clean'
+	@echo
+	@echo 'BUILD=release|debug|asan|tsan  CC=gcc|clang  OPT=-O2  CFLAGS_EXTRA=  V=1'
+	@echo 'INSTALL=no (never call apt-get)  QUALITY=default|paper  RESULTS=folder'
