@@ -67,9 +67,15 @@ struct group {
 };
 struct group *experiment_groups(const struct experiment *, struct arena *, int *n_groups);
 
-// The table of keys (name, default, meaning), for `photonlab list experiment`.
+// The table of keys (name, default, meaning), for `photonlab list experiment`. A default in
+// parentheses is a description, any other is a value as a file would give it. Where lists cross, the
+// first key of the table varies slowest.
+struct reading;
+struct node;
 struct experiment_key {
   const char *name, *fallback, *meaning;
+  bool crosses; // may be a list: one cell for each item
+  bool (*read)(struct reading *, const struct node *, struct cell *); // NULL: title, parts, paper
 };
 extern const struct experiment_key experiment_keys[];
 extern const int n_experiment_keys;

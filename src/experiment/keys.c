@@ -1,0 +1,219 @@
+#include "experiment/keys.h"
+#include "numeric/rng.h"
+#include "scene/scene.h"
+
+#include <limits.h>
+#include <string.h>
+
+// The counter of the random numbers gives iterations and paths 48 bits each (numeric/rng.h).
+static const uint64_t most_counted = (UINT64_C(1) << 48) - 1;
+// Runs are counted in doubles by the moments.
+static const uint64_t most_runs = 1000000000000000;
+
+bool key_read_scene(struct reading *reading, const struct node *node, struct cell *cell) {
+  cell->scene_path = value_text(reading, node, "a file");
+  if (!cell->scene_path) return false;
+  cell->scene = file_base_name(cell->scene_path, reading->arena);
+  return file_exists(cell->scene_path) ||
+         value_complain(reading, node, "does not exist (paths start at the working directory)");
+}
+
+// ---- rows of tables: the names are the tables' own ----
+
+bool key_read_integrator(struct reading *reading, const struct node *node, struct cell *cell) {
+  int n = 0, choice;
+  while (integrator_types[n]) n++;
+  const char **names = arena_new(reading->arena, const char *, n);
+  for (int j = 0; j < n; j++) names[j] = integrator_types[j]->name;
+  if (!value_choice(reading, node, names, n, &choice)) return false;
+  cell->integrator = integrator_types[choice];
+  return true;
+}
+
+bool key_read_kernel(struct reading *reading, const struct node *node, struct cell *cell) {
+  int choice;
+  const char **names = arena_new(reading->arena, const char *, n_kernels);
+  for (int j = 0; j < n_kernels; j++) names[j] = kernels[j].name;
+  if (!value_choice(reading, node, names, n_kernels, &choice)) return false;
+  cell->kernel = &kernels[choice];
+  return true;
+}
+
+bool key_read_law(struct reading *reading, const struct node *node, struct cell *cell) {
+  int choice;
+  const char **names = arena_new(reading->arena, const char *, n_laws);
+  for (int j = 0; j < n_laws; j++) names[j] = laws[j].name;
+  if (!value_choice(reading, node, names, n_laws, &choice)) return false;
+  cell->law = &laws[choice];
+  return true;
+}
+
+// ---- numbers ----
+
+bool key_read_alpha(struct reading *reading, const struct node *node, struct cell *cell) {
+  if (!value_number(reading, node, &cell->alpha)) return false;
+  return (cell->alpha >= 0 && cell->alpha <= 1) ||
+         value_complain(reading, node, "is outside [0, 1]");
+}
+
+bool key_read_radius(struct reading *reading, const struct node *node, struct cell *cell) {
+  if (!value_number(reading, node, &cell->radius)) return false;
+  return cell->radius > 0 || value_complain(reading, node, "is not positive");
+}
+
+bool key_read_photons(struct reading *reading, const struct node *node, struct cell *cell) {
+  return value_count(reading, node, 1, most_counted, &cell->photons);
+}
+
+bool key_read_iterations(struct reading *reading, const struct node *node, struct cell *cell) {
+  return value_count(reading, node, 1, most_counted, &cell->iterations);
+}
+
+bool key_read_runs(struct reading *reading, const struct node *node, struct cell *cell) {
+  return value_count(reading, node, 1, most_runs, &cell->runs);
+}
+
+bool key_read_depth(struct reading *reading, const struct node *node, struct cell *cell) {
+  uint64_t depth;
+  if (!value_count(reading, node, 0, INT_MAX, &depth)) return false;
+  cell->depth = (int)depth;
+  return true;
+}
+
+// What begins like a number is one; anything else is a name.
+bool key_read_seed(struct reading *reading, const struct node *node, struct cell *cell) {
+  const char *text = value_text(reading, node, "a number or a name");
+  if (!text) return false;
+  if (strchr("+-.0123456789", text[0]))
+    return value_count(reading, node, 0, UINT64_MAX, &cell->seed);
+  cell->seed = rng_hash_name(text);
+  return true;
+}
+
+// ---- choices ----
+
+bool key_read_direct(struct reading *reading, const struct node *node, struct cell *cell) {
+  static const char *const names[] = {[DIRECT_PHOTONS] = "photons", [DIRECT_NEE] = "nee"};
+  int choice;
+  if (!value_choice(reading, node, names, 2, &choice)) return false;
+  cell->direct = (enum direct)choice;
+  return true;
+}
+
+bool key_read_pixel(struct reading *reading, const struct node *node, struct cell *cell) {
+  static const char *const names[] = {"centre", "footprint"};
+  int choice;
+  if (!value_choice(reading, node, names, 2, &choice)) return false;
+  cell->footprint = choice == 1;
+  return true;
+}
+
+// ---- lists that do not cross ----
+
+// A single value stands for a list of one.
+static int list_count(const struct node *node) { return node->kind == NODE_LIST ? node->count : 1; }
+
+static const struct node *list_item(const struct node *node, int j) {
+  return node->kind == NODE_LIST ? node->item[j] : node;
+}
+
+bool key_read_quantity(struct reading *reading, const struct node *node, struct cell *cell) {
+  static const char *const names[] = {"variance", "bias"};
+  cell->quantities = 0;
+  for (int j = 0; j < list_count(node); j++) {
+    int choice;
+    if (!value_choice(reading, list_item(node, j), names, 2, &choice)) return false;
+    unsigned bit = choice == 0 ? QUANTITY_VARIANCE : QUANTITY_BIAS;
+    if (cell->quantities & bit)
+      return value_complain(reading, list_item(node, j), "is listed twice");
+    cell->quantities |= bit;
+  }
+  return true;
+}
+
+bool key_read_images(struct reading *reading, const struct node *node, struct cell *cell) {
+  cell->n_images = list_count(node);
+  cell->image = arena_new(reading->arena, uint64_t, cell->n_images);
+  for (int j = 0; j < cell->n_images; j++) {
+    const struct node *item = list_item(node, j);
+    if (!value_count(reading, item, 1, most_counted, &cell->image[j])) return false;
+    if (j > 0 && cell->image[j] <= cell->image[j - 1])
+      return value_complain(reading, item, "does not ascend");
+  }
+  return true;
+}
+
+static bool read_pixel(struct reading *reading, const struct node *node, struct pixel *pixel) {
+  uint64_t x, y;
+  if (node->kind != NODE_LIST || node->count != 2)
+    return value_complain(reading, node, "where a pixel [x, y] is expected");
+  if (!value_count(reading, node->item[0], 0, INT_MAX, &x) ||
+      !value_count(reading, node->item[1], 0, INT_MAX, &y))
+    return false;
+  *pixel = (struct pixel){(int)x, (int)y};
+  return true;
+}
+
+bool key_read_probes(struct reading *reading, const struct node *node, struct cell *cell) {
+  if (node->kind != NODE_LIST)
+    return value_complain(reading, node, "where pixels [[x, y], ...] are expected");
+  cell->n_probes = node->count;
+  cell->probe = arena_new(reading->arena, struct pixel, node->count);
+  for (int j = 0; j < node->count; j++) {
+    struct pixel *probe = &cell->probe[j];
+    if (!read_pixel(reading, node->item[j], probe)) return false;
+    for (int k = 0; k < j; k++)
+      if (cell->probe[k].x == probe->x && cell->probe[k].y == probe->y)
+        return problem_at(reading->problem, node->item[j]->place, "%s: [%d, %d] is listed twice",
+                          reading->key, probe->x, probe->y);
+  }
+  return true;
+}
+
+// ---- the reference ----
+
+static bool read_reference_name(struct reading *reading, const struct node *node,
+                                struct cell *cell) {
+  static const char *const names[] = {"analytic", "path", "none"};
+  int choice;
+  if (!value_choice(reading, node, names, 3, &choice)) return false;
+  cell->reference_integrator = names[choice];
+  return true;
+}
+
+static bool read_reference_se(struct reading *reading, const struct node *node, struct cell *cell) {
+  if (!value_number(reading, node, &cell->reference_se)) return false;
+  return cell->reference_se > 0 || value_complain(reading, node, "is not positive");
+}
+
+static bool read_reference_mapping(struct reading *reading, const struct node *node,
+                                   struct cell *cell) {
+  static const char *const names[] = {"integrator", "se"};
+  for (int j = 0; j < node->count; j++) {
+    int choice;
+    struct reading inner = *reading;
+    if (!value_choice(&inner, node->key[j], names, 2, &choice)) return false;
+    inner.key = choice == 0 ? "reference integrator" : "reference se";
+    if (choice == 0 ? !read_reference_name(&inner, node->item[j], cell)
+                    : !read_reference_se(&inner, node->item[j], cell))
+      return false;
+  }
+  return true;
+}
+
+// `analytic`, `none`, or {integrator: path, se: 0.001}.
+bool key_read_reference(struct reading *reading, const struct node *node, struct cell *cell) {
+  cell->reference_integrator = "analytic";
+  cell->reference_se = 0;
+  if (node->kind == NODE_MAPPING ? !read_reference_mapping(reading, node, cell)
+                                 : !read_reference_name(reading, node, cell))
+    return false;
+  bool traced = strcmp(cell->reference_integrator, "path") == 0;
+  if (traced && cell->reference_se == 0)
+    return problem_at(
+        reading->problem, node->place,
+        "reference: path needs a standard error to reach, {integrator: path, se: ...}");
+  if (!traced && cell->reference_se > 0)
+    return problem_at(reading->problem, node->place, "reference: se belongs to integrator path");
+  return true;
+}
