@@ -9,7 +9,7 @@
 struct bvh; // bvh/bvh.c
 
 struct bvh_options {
-  int leaf_size;  // most primitives in a leaf; 0: the default
+  int leaf_size; // most primitives in a leaf; 0: the default
 };
 
 struct bvh *bvh_build(const struct scene *, struct bvh_options, struct arena *);

@@ -8,6 +8,11 @@
 
 #define QUADRIC_TURN 6.283185307179586 // 2 pi
 
+static inline const struct quadric *shape_quadric(const struct scene *scene,
+                                                  const struct shape *shape, uint32_t primitive) {
+  return &scene->quadric[shape->local + (primitive - shape->first)];
+}
+
 // Whether an angle from the x axis, in [0, 2 pi), is part of the sweep.
 static inline bool quadric_sweeps(const struct quadric *q, double x, double y) {
   if (q->phi_max >= QUADRIC_TURN) return true;
@@ -27,13 +32,8 @@ static inline bool disk_hit(const struct quadric *q, const struct box *box, cons
   return quadric_sweeps(q, p.x, p.y) && clip_accept(cone, box, ray->t_max, t);
 }
 
-// shape_type.intersect of the disk.
-static inline bool disk_intersect(const struct scene *scene, const struct shape *shape,
-                                  uint32_t primitive, const struct ray *ray, double *t) {
-  if (ray->leaving == primitive) return false;
-  struct box box = shape->type->bounds(scene, shape, primitive);
-  struct cone cone = cone_of(ray);
-  return disk_hit(&scene->quadric[shape->local + (primitive - shape->first)], &box, &cone, ray, t);
-}
+// shape_type.intersect of the disk (scene/intersect.c).
+bool disk_intersect(const struct scene *, const struct shape *, uint32_t primitive,
+                    const struct ray *, double *t);
 
 #endif

@@ -45,13 +45,8 @@ static inline bool sphere_hit(const struct quadric *s, const struct box *box,
   return false;
 }
 
-// shape_type.intersect of the sphere.
-static inline bool sphere_intersect(const struct scene *scene, const struct shape *shape,
-                                    uint32_t primitive, const struct ray *ray, double *t) {
-  struct box box = shape->type->bounds(scene, shape, primitive);
-  struct cone cone = cone_of(ray);
-  return sphere_hit(&scene->quadric[shape->local + (primitive - shape->first)], &box, &cone, ray,
-                    ray->leaving == primitive, t);
-}
+// shape_type.intersect of the sphere (scene/intersect.c).
+bool sphere_intersect(const struct scene *, const struct shape *, uint32_t primitive,
+                      const struct ray *, double *t);
 
 #endif

@@ -82,15 +82,9 @@ static inline void triangle_gather(const struct scene *scene, const struct shape
     for (int k = 0; k < 3; k++) vertex[i][k] = scene->position[row[i]][k];
 }
 
-// shape_type.intersect of every shape made of triangles.
-static inline bool triangle_intersect(const struct scene *scene, const struct shape *shape,
-                                      uint32_t primitive, const struct ray *ray, double *t) {
-  if (ray->leaving == primitive) return false;
-  float vertex[3][3];
-  triangle_gather(scene, shape, primitive, vertex);
-  struct shear shear = shear_of(ray);
-  struct cone cone = cone_of(ray);
-  return triangle_accepts(&shear, vertex) && triangle_distance(&cone, ray, vertex, t);
-}
+// shape_type.intersect of every shape made of triangles; the tree knows triangles by it
+// (scene/intersect.c).
+bool triangle_intersect(const struct scene *, const struct shape *, uint32_t primitive,
+                        const struct ray *, double *t);
 
 #endif
