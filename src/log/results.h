@@ -1,5 +1,6 @@
 // A results directory read back: what was run and what was measured. Written by src/run, read by the
-// analysis. Formats: log.csv (columns in log_columns), probes.csv, manifest.json, experiment.yaml.
+// analysis. Formats: log.csv (columns in log_columns), probes.csv, manifest.json, a copy of
+// the experiment.
 #ifndef LOG_RESULTS_H
 #define LOG_RESULTS_H
 
@@ -47,6 +48,7 @@ struct log_column {
 };
 extern const struct log_column log_columns[];
 extern const int n_log_columns;
+extern const char probes_header[]; // first line of probes.csv
 
 // Rec.709 luminance, exact for equal channels.
 static inline double luminance(const double *value, int n_channels) {

@@ -1,0 +1,159 @@
+#include "run/block.h"
+
+#include "base/file.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+// Running sums of one run: of the probes' luminance, and of the film where images are kept.
+struct averages {
+  double *probe, *film;
+  long film_size;
+};
+
+static void keep_images(const struct group_plan *plan, uint64_t i, const double *film, long size,
+                        double *value) {
+  for (int m = 0; m < plan->cell->n_images; m++) {
+    if (plan->cell->image[m] != i) continue;
+    long image = size / plan->measure.n_estimators;
+    for (int e = 0; e < plan->measure.n_estimators; e++)
+      for (long k = 0; k < image; k++)
+        value[plan_image(plan, e, m) + k] = film[e * image + k] / (double)i;
+  }
+}
+
+// Iteration i's frame into the run's vector.
+static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, const double *frame,
+                 struct averages *sum, double *value) {
+  const struct measurement *measure = &plan->measure;
+  int n_channels = measure->features.n_channels;
+  for (int e = 0; e < measure->n_estimators; e++)
+    for (int p = 0; p < plan->n_probes; p++) {
+      long at = ((long)e * measure->n_points + plan->probe_point[p]) * n_channels;
+      double *series = value + plan_series(plan, e, p);
+      double *total = &sum->probe[e * plan->n_probes + p];
+      series[i - 1] = luminance(frame + at, n_channels);
+      *total += series[i - 1];
+      if (checkpoint >= 0)
+        series[plan->cell->iterations + (uint64_t)checkpoint] = *total / (double)i;
+    }
+  if (!plan->images) return;
+  for (long k = 0; k < sum->film_size; k++) sum->film[k] += frame[k];
+  keep_images(plan, i, sum->film, sum->film_size, value);
+}
+
+static void run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
+                     struct averages *sum, double *value) {
+  const struct integrator_type *integrator = plan->cell->integrator;
+  memset(sum->probe, 0,
+         (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
+  memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
+  integrator->begin(state, run);
+  int next = 0;
+  for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
+    integrator->step(state, i, frame);
+    bool due = plan->checkpoint[next] == i;
+    keep(plan, i, due ? next : -1, frame, sum, value);
+    next += due;
+  }
+}
+
+void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
+                   struct arena scratch) {
+  const struct measurement *measure = &plan->measure;
+  long frame_size =
+      (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
+  double *frame = arena_new(&scratch, double, frame_size);
+  double *value = arena_new(&scratch, double, plan->width);
+  struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
+  struct averages sum = {arena_new(&scratch, double, measure->n_estimators * plan->n_probes),
+                         arena_new(&scratch, double, plan->images ? frame_size : 0),
+                         plan->images ? frame_size : 0};
+  struct moments_tree tree = moments_tree_new(plan->width, &scratch);
+  void *state = plan->cell->integrator->new(measure, &scratch);
+  uint64_t first = block * RUNS_PER_BLOCK + 1, last = first + RUNS_PER_BLOCK - 1;
+  last = last < plan->cell->runs ? last : plan->cell->runs;
+  for (uint64_t run = first; run <= last; run++) {
+    run_once(plan, state, run, frame, &sum, value);
+    for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(value[k]);
+    moments_tree_push(&tree, leaf, &scratch);
+  }
+  moments_tree_root(&tree, out);
+}
+
+// ---- files ----
+
+struct block_header {
+  char magic[8]; // also tells the byte order of what follows apart: numbers are native
+  uint64_t fingerprint, block, width, check;
+};
+
+static struct block_header header_of(const struct group_plan *plan, uint64_t block,
+                                     const struct moments *moments) {
+  size_t bytes = (size_t)plan->width * sizeof *moments;
+  return (struct block_header){"PLBLOCK", plan->fingerprint, block, (uint64_t)plan->width,
+                               XXH64(moments, bytes, plan->fingerprint)};
+}
+
+static char *block_path(const struct group_plan *plan, uint64_t block, const char *directory,
+                        struct arena *arena) {
+  return arena_format(arena, "%s/blocks/group-%03d-block-%06llu", directory, plan->number,
+                      (unsigned long long)block);
+}
+
+// The moments of a whole and matching file, else NULL.
+static struct moments *block_load(const struct group_plan *plan, uint64_t block,
+                                  const char *directory, struct arena *arena) {
+  struct text text;
+  struct problem ignored = {0};
+  char *path = block_path(plan, block, directory, arena);
+  if (!file_exists(path) || !file_read(path, arena, &text, &ignored)) return NULL;
+  size_t bytes = (size_t)plan->width * sizeof(struct moments);
+  struct block_header header;
+  if ((size_t)text.length != sizeof header + bytes) return NULL;
+  struct moments *moments = arena_new(arena, struct moments, plan->width);
+  memcpy(&header, text.data, sizeof header);
+  memcpy(moments, text.data + sizeof header, bytes);
+  struct block_header expected = header_of(plan, block, moments);
+  return memcmp(&header, &expected, sizeof header) == 0 ? moments : NULL;
+}
+
+bool block_exists(const struct group_plan *plan, uint64_t block, const char *directory,
+                  struct arena scratch) {
+  return block_load(plan, block, directory, &scratch) != NULL;
+}
+
+void block_write(const struct group_plan *plan, uint64_t block, const char *directory,
+                 const struct moments *moments, struct arena scratch) {
+  struct problem problem = {0};
+  struct file_out out;
+  struct block_header header = header_of(plan, block, moments);
+  if (!file_begin(&out, block_path(plan, block, directory, &scratch), &problem))
+    die("%s", problem.text);
+  fwrite(&header, sizeof header, 1, out.stream);
+  fwrite(moments, sizeof *moments, (size_t)plan->width, out.stream);
+  if (!file_commit(&out, &problem)) die("%s", problem.text);
+}
+
+void block_remove(const struct group_plan *plan, uint64_t block, const char *directory,
+                  struct arena scratch) {
+  unlink(block_path(plan, block, directory, &scratch));
+}
+
+void block_merge(const struct group_plan *plan, const char *directory, struct moments *out,
+                 struct arena scratch) {
+  struct moments_tree tree = moments_tree_new(plan->width, &scratch);
+  struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
+  for (uint64_t block = 0; block < plan->n_blocks; block++) {
+    struct arena file = scratch; // given back after each block
+    struct moments *loaded = block_load(plan, block, directory, &file);
+    if (!loaded)
+      die("%s: block %llu of group %d has gone while the experiment ran", directory,
+          (unsigned long long)block, plan->number);
+    memcpy(leaf, loaded, (size_t)plan->width * sizeof *leaf);
+    moments_tree_push(&tree, leaf, &scratch);
+  }
+  moments_tree_root(&tree, out);
+}

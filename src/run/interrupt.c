@@ -1,0 +1,22 @@
+#define _GNU_SOURCE // sigaction
+#include "run/interrupt.h"
+
+#include <signal.h>
+#include <string.h>
+
+static volatile sig_atomic_t received;
+
+static void on_signal(int number) {
+  received = number;
+  signal(number, SIG_DFL);
+}
+
+void interrupt_install(void) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+int interrupt_signal(void) { return received; }

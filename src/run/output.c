@@ -1,0 +1,252 @@
+#define _GNU_SOURCE // rmdir
+#include "run/output.h"
+
+#include "base/file.h"
+#include "base/version.h"
+#include "image/image.h"
+#include "log/log.h"
+#include "run/block.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <string.h>
+#include <unistd.h>
+
+static char *path_of(const char *directory, const char *name, struct arena *arena) {
+  return arena_format(arena, "%s/%s", directory, name);
+}
+
+// The fingerprint in the directory's manifest, or an empty string.
+static const char *manifest_fingerprint(const char *directory, struct arena *arena) {
+  json_error_t error;
+  json_t *root = json_load_file(path_of(directory, "manifest.json", arena), 0, &error);
+  const char *text = json_string_value(json_object_get(root, "fingerprint"));
+  char *copy = arena_string(arena, text ? text : "", text ? (ptrdiff_t)strlen(text) : 0);
+  json_decref(root);
+  return copy;
+}
+
+static char *fingerprint_text(const struct plan *plan, struct arena *arena) {
+  return arena_format(arena, "%016" PRIx64, plan->fingerprint);
+}
+
+bool output_is_complete(const struct plan *plan, const char *directory, struct arena scratch) {
+  return strcmp(manifest_fingerprint(directory, &scratch), fingerprint_text(plan, &scratch)) == 0;
+}
+
+bool output_set_aside(const struct plan *plan, const char *directory, struct arena scratch,
+                      struct problem *problem) {
+  if (!file_exists(path_of(directory, "manifest.json", &scratch))) return true;
+  for (int k = 1;; k++) {
+    char *aside = arena_format(&scratch, "%s.%d", directory, k);
+    if (file_exists(aside)) continue;
+    if (rename(directory, aside) != 0)
+      return problem_set(problem, "%s: holds other results and cannot be renamed to %s: %s",
+                         directory, aside, strerror(errno));
+    if (!plan->options.quiet)
+      fprintf(stderr, "photonlab: %s held other results; they are now in %s\n", directory, aside);
+    return true;
+  }
+}
+
+// ---- log.csv and images ----
+
+static void write_group_log(FILE *out, const struct plan *plan, const struct group_plan *group,
+                            struct moments *moments) {
+  for (int e = 0; e < group->measure.n_estimators; e++)
+    for (int p = 0; p < group->n_probes; p++) {
+      struct moments *at = moments + plan_series(group, e, p);
+      struct series series = {group->group->cell[e],
+                              p,
+                              group->cell->iterations,
+                              at,
+                              group->n_checkpoints,
+                              group->checkpoint,
+                              at + group->cell->iterations};
+      log_write_series(out, &plan->experiment->cell[series.cell], &series);
+    }
+}
+
+static struct image moment_image(const struct group_plan *group, const struct moments *moments,
+                                 struct arena *arena) {
+  static const char *const names[] = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  const struct camera *camera = &group->loaded->scene.camera;
+  struct image image = image_new(camera->width, camera->height, 6, names, arena);
+  int n_channels = group->measure.features.n_channels;
+  for (long j = 0; j < group->measure.n_points; j++)
+    for (int c = 0; c < 3; c++) {
+      struct moments m = moments[j * n_channels + (n_channels == 3 ? c : 0)];
+      image.plane[c][j] = (float)m.mean;
+      image.plane[3 + c][j] = m.n > 1 ? (float)moments_variance(m) : NAN;
+    }
+  return image;
+}
+
+// images/SCENE-cellCCC-N.exr: mean over runs of the running average after N iterations, and its
+// variance over runs.
+static bool write_images(const struct outputs *outputs, const struct group_plan *group,
+                         const struct moments *moments, struct arena scratch,
+                         struct problem *problem) {
+  if (!group->images) return true;
+  char *folder = path_of(outputs->directory, "images", &scratch);
+  if (!file_make_directory(folder, problem)) return false;
+  for (int e = 0; e < group->measure.n_estimators; e++)
+    for (int m = 0; m < group->cell->n_images; m++) {
+      struct arena own = scratch;
+      const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];
+      struct image image = moment_image(group, moments + plan_image(group, e, m), &own);
+      image.manifest = arena_format(
+          &own,
+          "{\"experiment\": \"%s\", \"cell\": %d, \"scene\": \"%s\", \"integrator\": \"%s\", "
+          "\"kernel\": \"%s\", \"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, "
+          "\"photons\": %" PRIu64 ", \"iterations\": %" PRIu64 ", \"runs\": %" PRIu64 "}",
+          outputs->plan->experiment->name, cell->number, cell->scene, cell->integrator->name,
+          cell->kernel->name, cell->law->name, cell->alpha, cell->radius, cell->photons,
+          cell->image[m], cell->runs);
+      char *path = arena_format(&own, "%s/%s-cell%03d-%" PRIu64 ".exr", folder, cell->scene,
+                                cell->number, cell->image[m]);
+      if (!image_write(path, &image, problem)) return false;
+    }
+  return true;
+}
+
+// Rows go by cell, cells by their number, whatever groups they were computed in.
+static bool write_logs(const struct outputs *outputs, struct arena scratch,
+                       struct problem *problem) {
+  const struct plan *plan = outputs->plan;
+  struct file_out log;
+  if (!file_begin(&log, path_of(outputs->directory, "log.csv", &scratch), problem)) return false;
+  log_write_header(log.stream);
+  for (int g = 0; g < plan->n_groups; g++) {
+    const struct group_plan *group = &plan->group[g];
+    struct arena own = scratch;
+    struct moments *moments = arena_new(&own, struct moments, group->width);
+    block_merge(group, outputs->directory, moments, own);
+    write_group_log(log.stream, plan, group, moments);
+    if (!write_images(outputs, group, moments, own, problem)) {
+      file_abandon(&log);
+      return false;
+    }
+  }
+  return file_commit(&log, problem);
+}
+
+static bool write_probes(const struct outputs *outputs, struct arena scratch,
+                         struct problem *problem) {
+  struct file_out out;
+  if (!file_begin(&out, path_of(outputs->directory, "probes.csv", &scratch), problem)) return false;
+  fprintf(out.stream, "%s\n", probes_header);
+  for (int g = 0; g < outputs->plan->n_groups; g++) {
+    const struct group_plan *group = &outputs->plan->group[g];
+    for (int e = 0; e < group->group->n_cells; e++)
+      probes_write(out.stream, &outputs->plan->experiment->cell[group->group->cell[e]],
+                   outputs->probe[g], group->n_probes);
+  }
+  return file_commit(&out, problem);
+}
+
+static bool write_timing(const struct outputs *outputs, struct arena scratch,
+                         struct problem *problem) {
+  struct file_out out;
+  if (!file_begin(&out, path_of(outputs->directory, "timing.csv", &scratch), problem)) return false;
+  fputs("group,block,scene,photons,iterations,wall_s,cpu_s\n", out.stream);
+  for (int k = 0; k < outputs->n_timings; k++) {
+    const struct timing *t = &outputs->timing[k];
+    const struct cell *cell = outputs->plan->group[t->group].cell;
+    fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%.6f,%.6f\n", t->group, t->block,
+            cell->scene, cell->photons, cell->iterations, t->wall_s, t->cpu_s);
+  }
+  return file_commit(&out, problem);
+}
+
+static bool write_experiment(const struct outputs *outputs, struct arena scratch,
+                             struct problem *problem) {
+  const struct experiment *experiment = outputs->plan->experiment;
+  struct file_out out;
+  char *name = arena_format(&scratch, "%s/%s.yaml", outputs->directory, experiment->name);
+  if (!file_begin(&out, name, problem)) return false;
+  fwrite(experiment->text.data, 1, (size_t)experiment->text.length, out.stream);
+  return file_commit(&out, problem);
+}
+
+// ---- manifest.json ----
+
+static char *cpu_name(struct arena *arena) {
+  struct text text;
+  struct problem ignored = {0};
+  if (!file_read("/proc/cpuinfo", arena, &text, &ignored)) return "unknown";
+  char *at = strstr(text.data, "model name");
+  at = at ? strchr(at, ':') : NULL;
+  if (!at) return "unknown";
+  at += 1 + strspn(at + 1, " \t");
+  return arena_string(arena, at, (ptrdiff_t)strcspn(at, "\n"));
+}
+
+static json_t *hex(uint64_t value) {
+  char text[17];
+  snprintf(text, sizeof text, "%016" PRIx64, value);
+  return json_string(text);
+}
+
+static json_t *manifest_cell(const struct plan *plan, const struct cell *cell) {
+  uint64_t hash = 0;
+  for (int s = 0; s < plan->n_scenes; s++)
+    if (strcmp(plan->scene[s].path, cell->scene_path) == 0) hash = plan->scene[s].scene.hash;
+  json_t *out = json_object();
+  json_object_set_new(out, "cell", json_integer(cell->number));
+  json_object_set_new(out, "scene", json_string(cell->scene_path));
+  json_object_set_new(out, "scene_hash", hex(hash));
+  json_object_set_new(out, "integrator", json_string(cell->integrator->name));
+  json_object_set_new(out, "kernel", json_string(cell->kernel->name));
+  json_object_set_new(out, "law", json_string(cell->law->name));
+  json_object_set_new(out, "alpha", json_real(cell->alpha));
+  json_object_set_new(out, "radius", json_real(cell->radius));
+  json_object_set_new(out, "photons", json_integer((json_int_t)cell->photons));
+  json_object_set_new(out, "iterations", json_integer((json_int_t)cell->iterations));
+  json_object_set_new(out, "runs", json_integer((json_int_t)cell->runs));
+  json_object_set_new(out, "seed", hex(cell->seed));
+  json_object_set_new(out, "direct", json_string(cell->direct == DIRECT_NEE ? "nee" : "photons"));
+  json_object_set_new(out, "depth", json_integer(cell->depth));
+  json_object_set_new(out, "pixel", json_string(cell->footprint ? "footprint" : "centre"));
+  json_object_set_new(out, "reference", json_string(cell->reference_integrator));
+  return out;
+}
+
+static bool write_manifest(const struct outputs *outputs, struct arena scratch,
+                           struct problem *problem) {
+  const struct plan *plan = outputs->plan;
+  json_t *root = json_object(), *cells = json_array();
+  json_object_set_new(root, "experiment", json_string(plan->experiment->name));
+  json_object_set_new(root, "title", json_string(plan->experiment->title));
+  json_object_set_new(root, "quality", json_string(plan->experiment->quality));
+  json_object_set_new(root, "fingerprint", json_string(fingerprint_text(plan, &scratch)));
+  json_object_set_new(root, "commit", json_string(photonlab_version));
+  json_object_set_new(root, "compiler", json_string(photonlab_compiler));
+  json_object_set_new(root, "flags", json_string(photonlab_flags));
+  json_object_set_new(root, "cpu", json_string(cpu_name(&scratch)));
+  for (int c = 0; c < plan->experiment->n_cells; c++)
+    json_array_append_new(cells, manifest_cell(plan, &plan->experiment->cell[c]));
+  json_object_set_new(root, "cells", cells);
+  struct file_out out;
+  bool ok = file_begin(&out, path_of(outputs->directory, "manifest.json", &scratch), problem);
+  if (ok) {
+    json_dumpf(root, out.stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    fputc('\n', out.stream);
+    ok = file_commit(&out, problem);
+  }
+  json_decref(root);
+  return ok;
+}
+
+bool output_write(const struct outputs *outputs, struct arena scratch, struct problem *problem) {
+  if (!write_experiment(outputs, scratch, problem) || !write_probes(outputs, scratch, problem) ||
+      !write_logs(outputs, scratch, problem) || !write_timing(outputs, scratch, problem) ||
+      !write_manifest(outputs, scratch, problem))
+    return false;
+  for (int g = 0; g < outputs->plan->n_groups; g++)
+    for (uint64_t b = 0; b < outputs->plan->group[g].n_blocks; b++)
+      block_remove(&outputs->plan->group[g], b, outputs->directory, scratch);
+  rmdir(path_of(outputs->directory, "blocks", &scratch));
+  return true;
+}

@@ -1,0 +1,195 @@
+#include "run/plan.h"
+
+#include "base/version.h"
+#include "density/grid.h"
+#include "numeric/elementary.h"
+#include "walk/eye.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <xxhash.h>
+
+uint64_t *plan_checkpoints(uint64_t iterations, int *count, struct arena *arena) {
+  struct {
+    uint64_t *item;
+    ptrdiff_t count, capacity;
+  } list = {0};
+  uint64_t last = 0;
+  for (int j = 0; last < iterations; j++) {
+    uint64_t n = (uint64_t)floor(num_pow(10, j / 10.0) + 0.5);
+    n = n < iterations ? n : iterations;
+    if (n == last) continue;
+    *arena_push(arena, &list) = last = n;
+  }
+  *count = (int)list.count;
+  return list.item;
+}
+
+static const struct loaded_scene *load(struct plan *plan, const char *path, struct arena *arena,
+                                       struct problem *problem) {
+  for (int s = 0; s < plan->n_scenes; s++)
+    if (strcmp(plan->scene[s].path, path) == 0) return &plan->scene[s];
+  struct loaded_scene *loaded = &plan->scene[plan->n_scenes];
+  loaded->path = path;
+  if (!scene_read(path, arena, &loaded->scene, problem)) return NULL;
+  loaded->bvh = bvh_build(&loaded->scene, (struct bvh_options){0}, arena);
+  plan->n_scenes++;
+  return loaded;
+}
+
+// The default probes: the centres of a 3x3 partition of the film.
+static struct pixel *probe_grid(const struct camera *camera, struct arena *arena) {
+  struct pixel *probe = arena_new(arena, struct pixel, 9);
+  for (int k = 0; k < 9; k++)
+    probe[k] = (struct pixel){camera->width * (2 * (k % 3) + 1) / 6,
+                              camera->height * (2 * (k / 3) + 1) / 6};
+  return probe;
+}
+
+static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct problem *problem) {
+  const struct camera *camera = &plan->loaded->scene.camera;
+  const struct cell *cell = plan->cell;
+  plan->n_probes = cell->n_probes ? cell->n_probes : 9;
+  plan->probe_pixel = cell->n_probes ? cell->probe : probe_grid(camera, arena);
+  for (int p = 0; p < plan->n_probes; p++) {
+    struct pixel at = plan->probe_pixel[p];
+    if (at.x < 0 || at.y < 0 || at.x >= camera->width || at.y >= camera->height)
+      return problem_set(problem, "%s: probe [%d, %d] lies outside the film of %d x %d pixels",
+                         cell->scene_path, at.x, at.y, camera->width, camera->height);
+  }
+  plan->probe_point = arena_new(arena, int, plan->n_probes);
+  struct measurement *measure = &plan->measure;
+  bool film = plan->images || (measure->skip_off & SKIP_PROBES);
+  measure->n_points = film ? camera->width * camera->height : plan->n_probes;
+  struct pixel *pixel = arena_new(arena, struct pixel, measure->n_points);
+  for (int j = 0; j < measure->n_points; j++)
+    pixel[j] = film ? (struct pixel){j % camera->width, j / camera->width} : plan->probe_pixel[j];
+  for (int p = 0; p < plan->n_probes; p++)
+    plan->probe_point[p] =
+        film ? plan->probe_pixel[p].y * camera->width + plan->probe_pixel[p].x : p;
+  measure->pixel = pixel;
+  return true;
+}
+
+static bool plan_estimators(struct group_plan *plan, const struct experiment *experiment,
+                            struct arena *arena, struct problem *problem) {
+  struct measurement *measure = &plan->measure;
+  measure->n_estimators = plan->group->n_cells;
+  struct estimator *estimator = arena_new(arena, struct estimator, measure->n_estimators);
+  for (int e = 0; e < measure->n_estimators; e++) {
+    const struct cell *cell = &experiment->cell[plan->group->cell[e]];
+    estimator[e] = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
+    double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
+    if (cell->integrator->photons &&
+        !grid_radius_is_resolved(plan->loaded->scene.bounds, last, problem))
+      return false;
+  }
+  measure->estimator = estimator;
+  return true;
+}
+
+static void plan_layout(struct group_plan *plan, struct arena *arena) {
+  const struct measurement *measure = &plan->measure;
+  plan->checkpoint = plan_checkpoints(plan->cell->iterations, &plan->n_checkpoints, arena);
+  plan->series_width = (long)plan->cell->iterations + plan->n_checkpoints;
+  long image = (long)measure->n_points * measure->features.n_channels;
+  plan->width = measure->n_estimators *
+                (plan->n_probes * plan->series_width + (plan->images ? plan->cell->n_images : 0) * image);
+  plan->n_blocks = (plan->cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
+}
+
+long plan_series(const struct group_plan *plan, int estimator, int probe) {
+  return ((long)estimator * plan->n_probes + probe) * plan->series_width;
+}
+
+long plan_image(const struct group_plan *plan, int estimator, int image) {
+  long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
+  return plan_series(plan, plan->measure.n_estimators, 0) +
+         ((long)estimator * plan->cell->n_images + image) * size;
+}
+
+static bool plan_group(struct plan *plan, const struct group *group, struct group_plan *out,
+                       struct arena *arena, struct problem *problem) {
+  const struct cell *cell = &plan->experiment->cell[group->cell[0]];
+  out->group = group;
+  out->cell = cell;
+  out->loaded = load(plan, cell->scene_path, arena, problem);
+  if (!out->loaded) return false;
+  const struct scene *scene = &out->loaded->scene;
+  if (scene->n_lights == 0)
+    return problem_set(problem, "%s: the scene has no light, there is nothing to measure",
+                       cell->scene_path);
+  out->images = cell->n_images > 0;
+  out->measure = (struct measurement){
+      .scene = scene,
+      .bvh = out->loaded->bvh,
+      .features = scene_features(scene),
+      .n_replicas = 1,
+      .footprint = cell->footprint,
+      .nee = cell->direct == DIRECT_NEE,
+      .depth = cell->depth,
+      .n_emitted = cell->photons,
+      .seed = cell->seed,
+      .skip_off = plan->options.skip_off,
+  };
+  if (plan->options.skip_off & SKIP_GRAY) out->measure.features.n_channels = 3;
+  if (!plan_pixels(out, arena, problem)) return false;
+  if (!plan_estimators(out, plan->experiment, arena, problem)) return false;
+  plan_layout(out, arena);
+  return true;
+}
+
+// Everything that may change a number: the experiment's text, quality and seeds, the scenes, and the
+// program. What is skipped changes none, but it does change the images' channels.
+static void plan_fingerprint(struct plan *plan) {
+  XXH64_state_t *state = XXH64_createState();
+  XXH64_reset(state, 0);
+  XXH64_update(state, plan->experiment->text.data, (size_t)plan->experiment->text.length);
+  XXH64_update(state, plan->experiment->quality, strlen(plan->experiment->quality));
+  XXH64_update(state, photonlab_version, strlen(photonlab_version));
+  for (int s = 0; s < plan->n_scenes; s++)
+    XXH64_update(state, &plan->scene[s].scene.hash, sizeof plan->scene[s].scene.hash);
+  for (int c = 0; c < plan->experiment->n_cells; c++)
+    XXH64_update(state, &plan->experiment->cell[c].seed, sizeof(uint64_t));
+  for (int g = 0; g < plan->n_groups; g++)
+    XXH64_update(state, &plan->group[g].width, sizeof plan->group[g].width);
+  plan->fingerprint = XXH64_digest(state);
+  XXH64_freeState(state);
+  for (int g = 0; g < plan->n_groups; g++)
+    plan->group[g].fingerprint = plan->fingerprint + (uint64_t)g;
+}
+
+bool plan_make(const struct experiment *experiment, struct run_options options,
+               struct arena *arena, struct plan *plan, struct problem *problem) {
+  *plan = (struct plan){.experiment = experiment, .options = options};
+  struct group *group = experiment_groups(experiment, arena, &plan->n_groups);
+  plan->scene = arena_new(arena, struct loaded_scene, experiment->n_cells);
+  plan->group = arena_new(arena, struct group_plan, plan->n_groups);
+  for (int g = 0; g < plan->n_groups; g++) {
+    plan->group[g].number = g;
+    if (!plan_group(plan, &group[g], &plan->group[g], arena, problem)) return false;
+  }
+  plan_fingerprint(plan);
+  return true;
+}
+
+void plan_probes(const struct group_plan *plan, struct probe *probe, struct arena scratch) {
+  const struct scene *scene = &plan->loaded->scene;
+  struct walk *walk = walk_new(scene, plan->loaded->bvh, 3, &scratch);
+  for (int p = 0; p < plan->n_probes; p++) {
+    struct eye_point point;
+    eye_trace(walk, &scene->camera, &plan->probe_pixel[p], 1, false, &point);
+    probe[p] = (struct probe){.x = plan->probe_pixel[p].x,
+                              .y = plan->probe_pixel[p].y,
+                              .hit = point.hit,
+                              .reference = NAN,
+                              .reference_se = NAN};
+    if (!point.hit) continue;
+    probe[p].p = point.surface.p;
+    probe[p].n = point.n;
+    const struct material *material = scene_material(scene, &point.surface);
+    material->type->value(material, &point.surface, point.wo, point.n, probe[p].scale_rgb);
+    probe[p].scale = luminance(probe[p].scale_rgb, 3);
+    probe[p].emitted = luminance(point.emitted, 3);
+  }
+}

@@ -1,0 +1,66 @@
+// An experiment made ready: scenes loaded, cells grouped by what determines their paths, and the
+// layout of what one run of a group yields.
+#ifndef RUN_PLAN_H
+#define RUN_PLAN_H
+
+#include "experiment/experiment.h"
+#include "log/results.h"
+
+enum { RUNS_PER_BLOCK = 16 }; // a power of two: the unit of work, checkpoint and merge
+
+struct run_options {
+  int threads;       // 0: all cores
+  bool quiet;
+  unsigned skip_off; // bits of enum skip
+};
+
+struct loaded_scene {
+  const char *path;
+  struct scene scene;
+  struct bvh *bvh;
+};
+
+// One run of a group yields a vector of `width` numbers: for each estimator, for each probe,
+// `iterations` luminances and the running averages at the checkpoints; then for each estimator, for
+// each kept image, n_points * n_channels running averages.
+struct group_plan {
+  int number;
+  const struct group *group;
+  const struct cell *cell;    // the first: what all cells of the group share
+  const struct loaded_scene *loaded;
+  struct measurement measure;
+  int n_probes;
+  struct pixel *probe_pixel;
+  int *probe_point;           // where each probe is among the measured points
+  int n_checkpoints;
+  uint64_t *checkpoint;
+  bool images;                // the whole film is measured
+  long series_width, width;
+  uint64_t n_blocks;
+  uint64_t fingerprint;       // of all that determines the numbers
+};
+
+struct plan {
+  const struct experiment *experiment;
+  struct run_options options;
+  struct loaded_scene *scene;
+  int n_scenes;
+  struct group_plan *group;
+  int n_groups;
+  uint64_t fingerprint;       // of all groups
+};
+
+bool plan_make(const struct experiment *, struct run_options, struct arena *, struct plan *,
+               struct problem *);
+
+// Offsets into the vector.
+long plan_series(const struct group_plan *, int estimator, int probe);
+long plan_image(const struct group_plan *, int estimator, int image);
+
+// What the probes of a group see (reference NAN).
+void plan_probes(const struct group_plan *, struct probe *, struct arena scratch);
+
+// N at which running averages are logged: 10 a decade, every one up to 10, and the last.
+uint64_t *plan_checkpoints(uint64_t iterations, int *count, struct arena *);
+
+#endif

@@ -1,0 +1,13 @@
+// What bias is measured against: an unbiased estimate at the probes with a standard error asked for,
+// cached beside the results by what determines it.
+#ifndef RUN_REFERENCE_H
+#define RUN_REFERENCE_H
+
+#include "run/plan.h"
+
+// Fills reference and reference_se of the group's probes. `directory` holds the cache. The seed is
+// the references' own and shared with no run. Interrupted: returns false without a problem.
+bool reference_make(const struct group_plan *, const struct run_options *, const char *directory,
+                    struct probe *, struct arena scratch, struct problem *);
+
+#endif

@@ -1,0 +1,143 @@
+#define _GNU_SOURCE // clock_gettime
+#include "run/run.h"
+
+#include "base/file.h"
+#include "run/block.h"
+#include "run/interrupt.h"
+#include "run/output.h"
+#include "run/progress.h"
+#include "run/reference.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// One block of one group.
+struct unit {
+  int group;
+  uint64_t block;
+  double work; // photons, or samples: what progress and the order of work go by
+};
+
+struct units {
+  struct unit *item;
+  ptrdiff_t count, capacity;
+};
+
+static double work_of(const struct group_plan *plan, uint64_t block) {
+  uint64_t runs = plan->cell->runs - block * RUNS_PER_BLOCK;
+  runs = runs < RUNS_PER_BLOCK ? runs : RUNS_PER_BLOCK;
+  double photons = plan->cell->integrator->photons ? (double)plan->cell->photons : 0;
+  return (double)runs * (double)plan->cell->iterations *
+         (photons * (plan->cell->depth < 8 ? plan->cell->depth : 8) + plan->measure.n_points);
+}
+
+static int unit_order(const void *a, const void *b) {
+  const struct unit *left = a, *right = b;
+  if (left->work != right->work) return left->work > right->work ? -1 : 1;
+  if (left->group != right->group) return left->group < right->group ? -1 : 1;
+  return left->block < right->block ? -1 : 1;
+}
+
+// What is still to be done, the largest first; *done is the work that files already hold.
+static struct units units_left(const struct plan *plan, const char *directory, double *total,
+                               double *done, struct arena *arena) {
+  struct units units = {0};
+  for (int g = 0; g < plan->n_groups; g++)
+    for (uint64_t b = 0; b < plan->group[g].n_blocks; b++) {
+      double work = work_of(&plan->group[g], b);
+      *total += work;
+      if (block_exists(&plan->group[g], b, directory, *arena))
+        *done += work;
+      else
+        *arena_push(arena, &units) = (struct unit){g, b, work};
+    }
+  if (units.count) qsort(units.item, (size_t)units.count, sizeof *units.item, unit_order);
+  return units;
+}
+
+static double thread_cpu_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static struct timing compute(const struct group_plan *plan, const struct unit *unit,
+                             const char *directory, struct arena scratch) {
+  double wall = progress_clock_s(), cpu = thread_cpu_s();
+  struct moments *moments = arena_new(&scratch, struct moments, plan->width);
+  block_compute(plan, unit->block, moments, scratch);
+  block_write(plan, unit->block, directory, moments, scratch);
+  return (struct timing){unit->group, unit->block, progress_clock_s() - wall, thread_cpu_s() - cpu};
+}
+
+// All units on all threads. Each writes its own file, so there is nothing to share but the queue.
+static void compute_all(const struct plan *plan, const char *directory, const struct units *units,
+                        struct progress *progress, struct timing *timing) {
+  int threads = plan->options.threads ? plan->options.threads : omp_get_max_threads();
+#pragma omp parallel num_threads(threads)
+  {
+    struct arena scratch = arena_reserve();
+#pragma omp for schedule(dynamic, 1)
+    for (ptrdiff_t k = 0; k < units->count; k++) {
+      if (interrupt_signal()) continue;
+      const struct unit *unit = &units->item[k];
+      timing[k] = compute(&plan->group[unit->group], unit, directory, scratch);
+      progress_advance(progress, unit->work);
+    }
+    arena_release(scratch);
+  }
+}
+
+// Probes of all groups, with references. False without a problem: interrupted.
+static bool probes_make(const struct plan *plan, const char *directory, struct probe **probe,
+                        struct arena *arena, struct problem *problem) {
+  char *references = arena_format(arena, "%s/../references", directory);
+  for (int g = 0; g < plan->n_groups; g++) {
+    const struct group_plan *group = &plan->group[g];
+    probe[g] = arena_new(arena, struct probe, group->n_probes);
+    plan_probes(group, probe[g], *arena);
+    for (int p = 0; p < group->n_probes; p++)
+      if (!probe[g][p].hit)
+        return problem_set(problem, "%s: probe [%d, %d] sees no surface, choose another pixel",
+                           group->cell->scene_path, probe[g][p].x, probe[g][p].y);
+    if (!reference_make(group, &plan->options, references, probe[g], *arena, problem)) return false;
+  }
+  return true;
+}
+
+static enum run_outcome interrupted(const char *directory) {
+  fprintf(stderr,
+          "photonlab: interrupted; what is finished is kept in %s. The same command goes on from "
+          "there.\n",
+          directory);
+  return RUN_INTERRUPTED;
+}
+
+enum run_outcome run_experiment(const struct experiment *experiment, const char *directory,
+                                struct run_options options, struct arena *arena,
+                                struct problem *problem) {
+  struct plan plan;
+  if (!plan_make(experiment, options, arena, &plan, problem)) return RUN_FAILED;
+  if (output_is_complete(&plan, directory, *arena)) {
+    if (!options.quiet) fprintf(stderr, "photonlab: %s is up to date\n", directory);
+    return RUN_DONE;
+  }
+  if (!output_set_aside(&plan, directory, *arena, problem) ||
+      !file_make_directory(arena_format(arena, "%s/blocks", directory), problem))
+    return RUN_FAILED;
+  interrupt_install();
+  struct probe **probe = arena_new(arena, struct probe *, plan.n_groups);
+  if (!probes_make(&plan, directory, probe, arena, problem))
+    return problem->text[0] ? RUN_FAILED : interrupted(directory);
+  double total = 0, done = 0;
+  struct units units = units_left(&plan, directory, &total, &done, arena);
+  struct timing *timing = arena_new(arena, struct timing, units.count);
+  struct progress progress = progress_begin(experiment->name, total, done, options.quiet);
+  compute_all(&plan, directory, &units, &progress, timing);
+  progress_end(&progress);
+  if (interrupt_signal()) return interrupted(directory);
+  struct outputs outputs = {&plan, probe, timing, (int)units.count, directory};
+  return output_write(&outputs, *arena, problem) ? RUN_DONE : RUN_FAILED;
+}
