@@ -1,6 +1,7 @@
 // The parameter list of one pbrt-v4 directive: `"float fov" [38] "string filename" "x.pfm"`.
 // A slot's `read` takes what it knows; what nobody took is an error (params_finish), so nothing a
-// scene says is ignored silently. A parameter of the wrong type or count is an error with its place.
+// scene says is ignored silently. A parameter of the wrong type or count is an error with its
+// place.
 #ifndef PBRT_PARAMS_H
 #define PBRT_PARAMS_H
 
@@ -21,12 +22,16 @@ struct param {
   bool taken;
 };
 
+enum { PARAMS_MAX_ASKED = 32 };
+
 struct params {
   const char *directive; // for messages: "Shape \"sphere\""
   struct place place;
   struct param *item;
   int count;
   struct problem *problem; // set by the first getter that fails; getters then return the fallback
+  const char *asked[PARAMS_MAX_ASKED]; // what the getters were asked for, for messages
+  int n_asked;
 };
 
 // Each takes the named parameter if it is there (of exactly that type), else gives the fallback.

@@ -9,6 +9,7 @@ struct scene_builder {
   struct scene *scene;                // under construction; complete (with bounds) when lights are read
   struct transform world_from_object; // the current transformation at the directive
   bool reverse_orientation;           // at the directive
+  bool emits;                         // shapes: an area light comes with this one
   const struct shape *shape;          // area lights: the emitter; NULL otherwise
 };
 

@@ -1,0 +1,185 @@
+#include "scene/build.h"
+
+#include "scene/box.h"
+#include "scene/reader.h"
+
+#include <float.h>
+
+static uint64_t capacity_for(uint64_t count) {
+  uint64_t capacity = 8;
+  while (capacity < count) capacity *= 2;
+  return count ? capacity : 0;
+}
+
+void *build_grow(struct arena *arena, void *array, uint32_t count, uint32_t more, size_t size) {
+  uint64_t old = capacity_for(count), wanted = capacity_for((uint64_t)count + more);
+  if (old == wanted) return array;
+  return arena_grow(arena, array, (ptrdiff_t)old, (ptrdiff_t)wanted, (ptrdiff_t)size,
+                    (ptrdiff_t)alignof(max_align_t));
+}
+
+uint32_t build_begin_shape(struct scene_builder *builder, const struct shape_type *type,
+                           uint32_t material, bool flip) {
+  struct scene *scene = builder->scene;
+  scene->shape = build_grow(builder->arena, scene->shape, scene->n_shapes, 1, sizeof *scene->shape);
+  scene->shape[scene->n_shapes] = (struct shape){.type = type,
+                                                 .first = scene->n_primitives,
+                                                 .material = material,
+                                                 .light = LIGHT_NONE,
+                                                 .flip = flip};
+  return scene->n_shapes++;
+}
+
+static struct shape *current_shape(struct scene *scene) {
+  return &scene->shape[scene->n_shapes - 1];
+}
+
+// Rows and primitives are counted in 32 bits; the last number means none.
+static bool check_room(struct params *params, uint64_t count, uint64_t more) {
+  if (count + more < UINT32_MAX) return true;
+  return params_complain(params, "P", "the scene has more than 2^32 - 2 primitives or vertices");
+}
+
+static bool is_float(double x) { return x >= -(double)FLT_MAX && x <= (double)FLT_MAX; }
+
+static bool add_vertices(struct scene_builder *builder, struct params *params,
+                         const double (*vertex)[3], uint32_t n) {
+  struct scene *scene = builder->scene;
+  scene->position =
+      build_grow(builder->arena, scene->position, scene->n_positions, n, sizeof *scene->position);
+  for (uint32_t k = 0; k < n; k++) {
+    struct vec p =
+        transform_point(&builder->world_from_object, vec(vertex[k][0], vertex[k][1], vertex[k][2]));
+    if (!is_float(p.x) || !is_float(p.y) || !is_float(p.z))
+      return params_complain(params, "P", "vertex %u is too far away for a float", k);
+    float *to = scene->position[scene->n_positions + k];
+    to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
+  }
+  return true;
+}
+
+static bool add_rows(struct scene_builder *builder, struct params *params, const double *index,
+                     uint32_t n_triangles, uint32_t n_vertices) {
+  struct scene *scene = builder->scene;
+  scene->triangle = build_grow(builder->arena, scene->triangle, scene->n_triangles, n_triangles,
+                               sizeof *scene->triangle);
+  for (uint32_t k = 0; k < n_triangles; k++)
+    for (int j = 0; j < 3; j++) {
+      double row = index[3 * (ptrdiff_t)k + j];
+      if (!(row >= 0 && row < n_vertices))
+        return params_complain(params, "indices",
+                               "index number %td is %.0f, but the vertices are 0 to %u",
+                               3 * (ptrdiff_t)k + j + 1, row, n_vertices - 1);
+      scene->triangle[scene->n_triangles + k][j] = scene->n_positions + (uint32_t)row;
+    }
+  return true;
+}
+
+bool scene_add_triangles(struct scene_builder *builder, struct params *params,
+                         const double (*vertex)[3], uint32_t n_vertices, const double *index,
+                         uint32_t n_triangles) {
+  struct scene *scene = builder->scene;
+  if (!check_room(params, scene->n_positions, n_vertices)) return false;
+  if (!check_room(params, scene->n_primitives, n_triangles)) return false;
+  if (!add_vertices(builder, params, vertex, n_vertices)) return false;
+  if (!add_rows(builder, params, index, n_triangles, n_vertices)) return false;
+  struct shape *shape = current_shape(scene);
+  shape->local = scene->n_triangles;
+  shape->count = n_triangles;
+  scene->n_positions += n_vertices;
+  scene->n_triangles += n_triangles;
+  scene->n_primitives += n_triangles;
+  return true;
+}
+
+static bool box_is_finite(const struct box *box) {
+  for (int i = 0; i < 3; i++)
+    if (!(box->lo[i] >= -FLT_MAX && box->hi[i] <= FLT_MAX)) return false;
+  return true;
+}
+
+bool scene_add_quadric(struct scene_builder *builder, struct params *params,
+                       const struct quadric *quadric) {
+  struct scene *scene = builder->scene;
+  if (!check_room(params, scene->n_primitives, 1)) return false;
+  scene->quadric =
+      build_grow(builder->arena, scene->quadric, scene->n_quadrics, 1, sizeof *scene->quadric);
+  struct quadric *row = &scene->quadric[scene->n_quadrics];
+  *row = *quadric;
+  row->world_from_object = builder->world_from_object;
+  transform_invert(row->world_from_object, &row->object_from_world); // the reader checked it
+  struct shape *shape = current_shape(scene);
+  shape->local = scene->n_quadrics++;
+  shape->count = 1;
+  struct box box = shape->type->bounds(scene, shape, scene->n_primitives++);
+  return box_is_finite(&box) || params_complain(params, "radius", "it does not fit into floats");
+}
+
+static void fill_tables(struct scene_builder *builder) {
+  struct scene *scene = builder->scene;
+  scene->shape_of = arena_new(builder->arena, uint32_t, scene->n_primitives);
+  scene->bounds = box_empty();
+  for (uint32_t s = 0; s < scene->n_shapes; s++) {
+    const struct shape *shape = &scene->shape[s];
+    for (uint32_t k = shape->first; k < shape->first + shape->count; k++) {
+      scene->shape_of[k] = s;
+      scene->bounds = box_union(scene->bounds, shape->type->bounds(scene, shape, k));
+    }
+  }
+}
+
+static bool read_light(struct reader *reader, struct pending_light *pending, struct light *light) {
+  struct scene_builder *builder = &reader->builder;
+  builder->world_from_object = pending->world_from_object;
+  builder->reverse_orientation = pending->reverse_orientation;
+  builder->shape = NULL;
+  if (pending->type->area) {
+    struct shape *shape = &builder->scene->shape[pending->shape];
+    shape->light = (uint32_t)(light - builder->scene->light);
+    builder->shape = shape;
+  }
+  // Several shapes may share the parameters of one AreaLightSource.
+  for (int i = 0; i < pending->params.count; i++) pending->params.item[i].taken = false;
+  light->type = pending->type;
+  return pending->type->read(builder, &pending->params, light) && params_finish(&pending->params);
+}
+
+static bool read_lights(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  scene->light = arena_new(reader->builder.arena, struct light, reader->lights.count);
+  scene->n_lights = (uint32_t)reader->lights.count;
+  for (ptrdiff_t k = 0; k < reader->lights.count; k++)
+    if (!read_light(reader, &reader->lights.item[k], &scene->light[k])) return false;
+  return true;
+}
+
+static double mean_power(const struct light *light) {
+  return (light->power[0] + light->power[1] + light->power[2]) / 3;
+}
+
+static bool choose_lights(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  scene->light_cdf = arena_new(reader->builder.arena, double, (ptrdiff_t)scene->n_lights + 1);
+  if (scene->n_lights == 0) return true;
+  double total = 0;
+  for (uint32_t k = 0; k < scene->n_lights; k++) total += mean_power(&scene->light[k]);
+  struct place place = reader->lights.item[0].params.place;
+  if (total == 0) return problem_at(reader->problem, place, "no light emits anything");
+  if (!(total > 0 && total < INFINITY))
+    return problem_at(reader->problem, place, "the lights' power is not a positive number");
+  for (uint32_t k = 0; k < scene->n_lights; k++) {
+    scene->light[k].probability = mean_power(&scene->light[k]) / total;
+    scene->light_cdf[k + 1] = scene->light_cdf[k] + scene->light[k].probability;
+  }
+  scene->light_cdf[scene->n_lights] = 1; // what rounding left over
+  return true;
+}
+
+bool scene_finish(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  if (!read_finish_options(reader)) return false;
+  if (scene->n_primitives == 0)
+    return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
+  fill_tables(&reader->builder);
+  return read_lights(reader) && choose_lights(reader);
+}

@@ -1,0 +1,229 @@
+// Directives before WorldBegin: camera, film, and how to render.
+#include "scene/camera.h"
+#include "scene/reader.h"
+
+#include <string.h>
+
+static bool is_one_of(const char *name, const char *const *names, int n) {
+  for (int i = 0; i < n; i++)
+    if (strcmp(name, names[i]) == 0) return true;
+  return false;
+}
+#define IS_ONE_OF(name, names) is_one_of(name, names, (int)(sizeof(names) / sizeof *(names)))
+
+// pbrt lets the last one win, which hides mistakes.
+static bool only_once(struct reader *reader, const struct call *call, struct place *given) {
+  if (given->line > 0)
+    return problem_at(reader->problem, call->place, "a second %s (the first is in line %d)",
+                      call->name, given->line);
+  *given = call->place;
+  return true;
+}
+
+static bool wrong_type(struct reader *reader, const struct call *call, const char *advice) {
+  return problem_at(reader->problem, call->place, "%s \"%s\" is not in this version; %s",
+                    call->name, call->type, advice);
+}
+
+void read_default_options(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  scene->camera = (struct camera){
+      .world_from_camera = transform_identity(), .fov = 90, .width = 1280, .height = 720};
+  scene->settings = (struct scene_settings){
+      .filename = NULL, .max_depth = 5, .spp = 16, .radius = NAN, .alpha = NAN, .seed = -1};
+  reader->sampler_seed = -1;
+}
+
+// Accepted where it has pbrt's default, which is all we do.
+static void only_default(struct params *params, const char *name, double value) {
+  if (params_float(params, name, value) != value)
+    params_complain(params, name, "\"%s\" must be %g in this version", name, value);
+}
+
+bool read_camera(struct reader *reader, struct call *call) {
+  struct params *params = &call->params;
+  struct camera *camera = &reader->builder.scene->camera;
+  if (!only_once(reader, call, &reader->camera)) return false;
+  if (strcmp(call->type, "perspective") != 0)
+    return wrong_type(reader, call, "use \"perspective\"");
+  camera->fov = params_float(params, "fov", 90);
+  if (!(camera->fov > 0 && camera->fov < 180))
+    params_complain(params, "fov", "fov must be between 0 and 180 degrees");
+  only_default(params, "lensradius", 0);
+  only_default(params, "shutteropen", 0);
+  only_default(params, "shutterclose", 1);
+  params_float(params, "focaldistance", 0); // without a lens everything is in focus
+  reader->frame_aspect_ratio = params_float(params, "frameaspectratio", 0);
+  ptrdiff_t count;
+  reader->screen_window = params_array(params, "float", "screenwindow", &count);
+  if (reader->screen_window && count != 4)
+    params_complain(params, "screenwindow", "screenwindow needs 4 numbers, has %td", count);
+  transform_invert(reader->now.world_from_object, &camera->world_from_camera);
+  return params_finish(params);
+}
+
+// An image larger than this in either direction is a mistake in the file.
+enum { MAX_RESOLUTION = 65536 };
+
+static int read_resolution(struct params *params, const char *name, int fallback) {
+  int64_t pixels = params_integer(params, name, fallback);
+  if (pixels >= 1 && pixels <= MAX_RESOLUTION) return (int)pixels;
+  params_complain(params, name, "%s must be from 1 to %d", name, MAX_RESOLUTION);
+  return fallback;
+}
+
+bool read_film(struct reader *reader, struct call *call) {
+  struct params *params = &call->params;
+  struct scene *scene = reader->builder.scene;
+  if (!only_once(reader, call, &reader->film)) return false;
+  if (strcmp(call->type, "rgb") != 0) return wrong_type(reader, call, "use \"rgb\"");
+  scene->camera.width = read_resolution(params, "xresolution", 1280);
+  scene->camera.height = read_resolution(params, "yresolution", 720);
+  scene->settings.filename = params_string(params, "filename", NULL);
+  params_bool(params, "savefp16", true); // how pbrt stores; we always store 32 bits
+  return params_finish(params);
+}
+
+bool read_pixel_filter(struct reader *reader, struct call *call) {
+  struct params *params = &call->params;
+  if (!only_once(reader, call, &reader->filter)) return false;
+  if (strcmp(call->type, "box") != 0)
+    return wrong_type(reader, call,
+                      "use \"box\": others mix pixels, so their statistics are not independent");
+  static const char *const names[] = {"xradius", "yradius"};
+  for (int i = 0; i < 2; i++)
+    if (params_float(params, names[i], 0.5) != 0.5)
+      params_complain(params, names[i],
+                      "%s must be 0.5: a wider box mixes pixels, so their statistics are not "
+                      "independent",
+                      names[i]);
+  return params_finish(params);
+}
+
+static int64_t read_positive(struct params *params, const char *name, int64_t fallback) {
+  int64_t value = params_integer(params, name, fallback);
+  if (value < 1 && value != fallback) params_complain(params, name, "%s must be at least 1", name);
+  return value;
+}
+
+static int64_t read_seed(struct params *params) {
+  int64_t seed = params_integer(params, "seed", -1);
+  if (seed < -1) params_complain(params, "seed", "the seed must not be negative");
+  return seed;
+}
+
+// A jittered grid is a random position in the pixel to us; without jitter, 1 x 1 is the centre.
+static void read_stratified(struct params *params, struct scene_settings *settings) {
+  int64_t x = read_positive(params, "xsamples", 4), y = read_positive(params, "ysamples", 4);
+  if (x > 1 << 20 || y > 1 << 20) params_complain(params, "xsamples", "too many samples");
+  settings->spp = x * y;
+  settings->centre = !params_bool(params, "jitter", true);
+  if (settings->centre && settings->spp != 1)
+    params_complain(params, "jitter",
+                    "without jitter xsamples and ysamples must be 1: the pixel's centre");
+}
+
+bool read_sampler(struct reader *reader, struct call *call) {
+  static const char *const known[] = {"halton", "independent", "paddedsobol", "pmj02bn",
+                                      "sobol",  "stratified",  "zsobol"};
+  struct params *params = &call->params;
+  struct scene_settings *settings = &reader->builder.scene->settings;
+  if (!only_once(reader, call, &reader->sampler)) return false;
+  if (!IS_ONE_OF(call->type, known)) return wrong_type(reader, call, "use \"independent\"");
+  if (strcmp(call->type, "stratified") == 0)
+    read_stratified(params, settings);
+  else
+    settings->spp = read_positive(params, "pixelsamples", 16);
+  params_string(params, "randomization", NULL); // our numbers are always independent
+  reader->sampler_seed = read_seed(params);
+  return params_finish(params);
+}
+
+// pbrt's integrators that all converge to the same image, our path tracer's.
+static bool is_unbiased(const char *name) {
+  static const char *const known[] = {"bdpt",       "lightpath",  "mlt",           "path",
+                                      "randomwalk", "simplepath", "simplevolpath", "volpath"};
+  return IS_ONE_OF(name, known);
+}
+
+// Parameters of pbrt's that change how, not what; and one that changes what.
+static void read_pbrt_integrator(struct params *params) {
+  params_string(params, "lightsampler", NULL);
+  params_bool(params, "samplelights", true);
+  params_bool(params, "samplebsdf", true);
+  if (params_bool(params, "regularize", false))
+    params_complain(params, "regularize", "regularize must be false: it changes the image");
+}
+
+static void read_ranges(struct params *params, struct scene_settings *settings) {
+  settings->radius = params_float(params, "radius", NAN);
+  if (settings->radius <= 0) params_complain(params, "radius", "the radius must be positive");
+  settings->alpha = params_float(params, "alpha", NAN);
+  if (settings->alpha < 0 || settings->alpha > 1)
+    params_complain(params, "alpha", "alpha must be in [0, 1]");
+  int64_t depth = params_integer(params, "maxdepth", 5);
+  if (depth < 0 || depth > 1000000)
+    params_complain(params, "maxdepth", "maxdepth must be from 0 to 1000000");
+  settings->max_depth = (int)depth;
+}
+
+static void read_photons(struct params *params, struct scene_settings *settings) {
+  int64_t photons = read_positive(params, "photons", 0),
+          pbrt = read_positive(params, "photonsperiteration", 0);
+  if (photons && pbrt)
+    params_complain(params, "photons", "photons and photonsperiteration are the same: give one");
+  settings->photons = photons ? photons : pbrt;
+  settings->iterations = read_positive(params, "iterations", 0);
+}
+
+static void read_names(struct params *params, struct scene_settings *settings) {
+  static const char *const ways[] = {"photons", "nee"};
+  settings->kernel = params_string(params, "kernel", NULL);
+  settings->law = params_string(params, "law", NULL);
+  settings->direct = params_string(params, "direct", NULL);
+  if (settings->direct && !IS_ONE_OF(settings->direct, ways))
+    params_complain(params, "direct", "direct is \"photons\" or \"nee\", not \"%s\"",
+                    settings->direct);
+}
+
+bool read_integrator(struct reader *reader, struct call *call) {
+  struct params *params = &call->params;
+  struct scene_settings *settings = &reader->builder.scene->settings;
+  if (!only_once(reader, call, &reader->integrator)) return false;
+  bool unbiased = is_unbiased(call->type);
+  settings->integrator = unbiased ? "path" : call->type;
+  read_ranges(params, settings);
+  read_photons(params, settings);
+  read_names(params, settings);
+  settings->seed = read_seed(params);
+  if (unbiased) read_pbrt_integrator(params);
+  return params_finish(params);
+}
+
+bool read_color_space(struct reader *reader, struct call *call) {
+  if (strcmp(call->type, "srgb") == 0) return true;
+  return wrong_type(reader, call, "use \"srgb\"");
+}
+
+// pbrt's default window is [-a a -1 1] with a the aspect ratio of a wide image, and so on.
+static bool check_window(struct reader *reader) {
+  const struct camera *camera = &reader->builder.scene->camera;
+  double aspect = (double)camera->width / camera->height;
+  double x = aspect > 1 ? aspect : 1, y = aspect > 1 ? 1 : 1 / aspect;
+  const double *window = reader->screen_window;
+  if (window && !(window[0] == -x && window[1] == x && window[2] == -y && window[3] == y))
+    return problem_at(reader->problem, reader->camera,
+                      "Camera: screenwindow is not in this version; change fov and resolution");
+  if (reader->frame_aspect_ratio != 0 && reader->frame_aspect_ratio != aspect)
+    return problem_at(reader->problem, reader->camera,
+                      "Camera: frameaspectratio is not in this version; change the resolution");
+  return true;
+}
+
+bool read_finish_options(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  if (!check_window(reader)) return false;
+  if (scene->settings.seed < 0) scene->settings.seed = reader->sampler_seed;
+  camera_set_window(&scene->camera);
+  return true;
+}

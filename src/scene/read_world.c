@@ -1,0 +1,127 @@
+// Directives after WorldBegin: shapes, materials, lights.
+#include "pbrt/suggest.h"
+#include "scene/build.h"
+#include "scene/reader.h"
+
+#include <string.h>
+
+enum { MAX_NAMES = 64 };
+
+// `"name" is unknown; did you mean ..., or: known are ...`
+static bool unknown_type(struct reader *reader, const struct call *call, const char *const *names,
+                         int n) {
+  char list[256] = "";
+  size_t used = 0;
+  for (int i = 0; i < n && used < sizeof list; i++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
+  const char *nearest = suggest_name(call->type, names, n);
+  return problem_at(reader->problem, call->place,
+                    "%s \"%s\" is not in this version%s%s%s (known: %s)", call->name, call->type,
+                    nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                    nearest ? "\"?" : "", list);
+}
+
+static const struct shape_type *find_shape(struct reader *reader, const struct call *call) {
+  const char *names[MAX_NAMES];
+  int n = 0;
+  for (const struct shape_type *const *type = shape_types; *type && n < MAX_NAMES; type++) {
+    if (strcmp((*type)->name, call->type) == 0) return *type;
+    names[n++] = (*type)->name;
+  }
+  unknown_type(reader, call, names, n);
+  return NULL;
+}
+
+static const struct material_type *find_material(struct reader *reader, const struct call *call) {
+  const char *names[MAX_NAMES];
+  int n = 0;
+  for (const struct material_type *const *type = material_types; *type && n < MAX_NAMES; type++) {
+    if (strcmp((*type)->name, call->type) == 0) return *type;
+    names[n++] = (*type)->name;
+  }
+  unknown_type(reader, call, names, n);
+  return NULL;
+}
+
+static const struct light_type *find_light(struct reader *reader, const struct call *call,
+                                           bool area) {
+  const char *names[MAX_NAMES];
+  int n = 0;
+  for (const struct light_type *const *type = light_types; *type && n < MAX_NAMES; type++) {
+    if ((*type)->area != area) continue;
+    if (strcmp((*type)->name, call->type) == 0) return *type;
+    names[n++] = (*type)->name;
+  }
+  unknown_type(reader, call, names, n);
+  return NULL;
+}
+
+static void add_pending_light(struct reader *reader, const struct light_type *type,
+                              const struct params *params, uint32_t shape) {
+  *arena_push(&reader->text, &reader->lights) =
+      (struct pending_light){.type = type,
+                             .params = *params,
+                             .world_from_object = reader->now.world_from_object,
+                             .reverse_orientation = reader->now.reverse_orientation,
+                             .shape = shape};
+}
+
+bool read_shape(struct reader *reader, struct call *call) {
+  const struct shape_type *type = find_shape(reader, call);
+  if (!type) return false;
+  const struct attributes *now = &reader->now;
+  struct scene_builder *builder = &reader->builder;
+  builder->world_from_object = now->world_from_object;
+  builder->reverse_orientation = now->reverse_orientation;
+  builder->emits = now->area_light != NULL;
+  bool mirrored = transform_determinant(now->world_from_object) < 0;
+  uint32_t row =
+      build_begin_shape(builder, type, now->material, now->reverse_orientation != mirrored);
+  if (!type->read(builder, &call->params) || !params_finish(&call->params)) return false;
+  if (now->area_light)
+    add_pending_light(reader, now->area_light->type, &now->area_light->params, row);
+  return true;
+}
+
+static void add_material(struct reader *reader, struct material material) {
+  struct scene *scene = reader->builder.scene;
+  scene->material = build_grow(reader->builder.arena, scene->material, scene->n_materials, 1,
+                               sizeof *scene->material);
+  reader->now.material = scene->n_materials;
+  scene->material[scene->n_materials++] = material;
+}
+
+bool read_material(struct reader *reader, struct call *call) {
+  struct material material = {.type = find_material(reader, call)};
+  if (!material.type) return false;
+  if (!material.type->read(&call->params, reader->builder.arena, &material) ||
+      !params_finish(&call->params))
+    return false;
+  add_material(reader, material);
+  return true;
+}
+
+// pbrt's: diffuse with reflectance 0.5, which is what "diffuse" without parameters is.
+void read_default_material(struct reader *reader) {
+  extern const struct material_type material_diffuse;
+  struct params none = {.directive = "the default material", .problem = reader->problem};
+  struct material material = {.type = &material_diffuse};
+  material.type->read(&none, reader->builder.arena, &material);
+  add_material(reader, material);
+}
+
+bool read_light_source(struct reader *reader, struct call *call) {
+  const struct light_type *type = find_light(reader, call, false);
+  if (!type) return false;
+  add_pending_light(reader, type, &call->params, 0);
+  return true;
+}
+
+bool read_area_light_source(struct reader *reader, struct call *call) {
+  const struct light_type *type = find_light(reader, call, true);
+  if (!type) return false;
+  struct area_light *light = arena_new(reader->builder.arena, struct area_light, 1);
+  *light = (struct area_light){type, call->params};
+  reader->now.area_light = light;
+  return true;
+}

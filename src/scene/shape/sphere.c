@@ -1,0 +1,99 @@
+// Shape "sphere": `float radius` [1], `zmin` [-radius], `zmax` [radius], `phimax` [360], as
+// pbrt-v4.
+#include "scene/shape/sphere.h"
+#include "scene/shape/quadric.h"
+
+#include <assert.h>
+
+// Matrices in text files carry six digits or more, so that a written rotation is one to about 1e-6.
+// Within this tolerance the density of uniform samples is off by at most twice as much, relative.
+static const double similarity_tolerance = 1e-5;
+
+// The squared scale of a rotation with uniform scale; false if the matrix is anything else.
+static bool similarity(const struct transform *t, double *scale2) {
+  struct vec x = transform_direction(t, vec(1, 0, 0)), y = transform_direction(t, vec(0, 1, 0)),
+             z = transform_direction(t, vec(0, 0, 1));
+  *scale2 = (vec_dot(x, x) + vec_dot(y, y) + vec_dot(z, z)) / 3;
+  double most = similarity_tolerance * *scale2;
+  return fabs(vec_dot(x, x) - *scale2) <= most && fabs(vec_dot(y, y) - *scale2) <= most &&
+         fabs(vec_dot(z, z) - *scale2) <= most && fabs(vec_dot(x, y)) <= most &&
+         fabs(vec_dot(y, z)) <= most && fabs(vec_dot(z, x)) <= most;
+}
+
+static bool read(struct scene_builder *builder, struct params *params) {
+  struct quadric q = {.radius = quadric_read_radius(params),
+                      .phi_max = quadric_read_phi_max(params)};
+  q.z_min = params_float(params, "zmin", -q.radius);
+  q.z_max = params_float(params, "zmax", q.radius);
+  if (!(q.z_min >= -q.radius && q.z_min < q.radius))
+    params_complain(params, "zmin", "zmin must be in [-radius, radius)");
+  if (!(q.z_max > q.z_min && q.z_max <= q.radius))
+    params_complain(params, "zmax", "zmax must be in (zmin, radius]");
+  double scale2;
+  if (builder->emits && !similarity(&builder->world_from_object, &scale2))
+    params_complain(params, "radius",
+                    "a sphere that emits cannot be stretched (its points would not be sampled "
+                    "uniformly); use rotations, translations and equal scales");
+  return params_finish(params) && scene_add_quadric(builder, params, &q);
+}
+
+// Exact for a whole sphere under any affine map: half the extent is the radius times the length of
+// the matrix row. Of a part, also within the transformed box of the part's z.
+static struct box bounds(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
+  (void)primitive;
+  const struct quadric *q = quadric_of(scene, shape);
+  const struct transform *t = &q->world_from_object;
+  double half[3];
+  for (int i = 0; i < 3; i++)
+    half[i] = q->radius * vec_length(vec(t->m[i][0], t->m[i][1], t->m[i][2]));
+  struct vec center = vec(t->m[0][3], t->m[1][3], t->m[2][3]),
+             extent = vec(half[0], half[1], half[2]);
+  struct box whole = box_around(center, extent, vec_add(box_terms(t, vec(0, 0, 0)), extent));
+  if (q->z_min == -q->radius && q->z_max == q->radius) return whole;
+  struct box slice =
+      box_transform(t, vec(-q->radius, -q->radius, q->z_min), vec(q->radius, q->radius, q->z_max));
+  return box_intersection(whole, slice);
+}
+
+static struct vec normal(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                         struct vec p) {
+  (void)primitive;
+  const struct quadric *q = quadric_of(scene, shape);
+  return quadric_normal(q, shape, transform_point(&q->object_from_world, p));
+}
+
+// Archimedes: radius * phi_max * height. Only of spheres that are not stretched: others never emit.
+static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
+  (void)primitive;
+  const struct quadric *q = quadric_of(scene, shape);
+  double scale2;
+  bool even = similarity(&q->world_from_object, &scale2);
+  assert(even);
+  (void)even;
+  return scale2 * q->radius * q->phi_max * (q->z_max - q->z_min);
+}
+
+static void sample(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                   double u0, double u1, struct vec *p, struct vec *ng) {
+  (void)primitive;
+  const struct quadric *q = quadric_of(scene, shape);
+  double z = q->z_min + u0 * (q->z_max - q->z_min), cosine, sine;
+  if (z > q->z_max) z = q->z_max; // the sum may round up past it
+  double r = sqrt((q->radius - z) * (q->radius + z));
+  quadric_angle(q, u1, &cosine, &sine);
+  struct vec at = vec(r * cosine, r * sine, z);
+  *p = transform_point(&q->world_from_object, at);
+  *ng = quadric_normal(q, shape, at);
+}
+
+const struct shape_type shape_sphere = {
+    .name = "sphere",
+    .about = "a sphere around the origin, or the part of it between zmin and zmax up to phimax",
+    .flat = false,
+    .read = read,
+    .bounds = bounds,
+    .intersect = sphere_intersect,
+    .normal = normal,
+    .area = area,
+    .sample = sample,
+};
