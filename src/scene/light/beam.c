@@ -87,6 +87,8 @@ static double gaussian_clear(const struct beam *beam, double x, double y) {
 
 // ---- cosine grating ----
 
+static const double most_periods = 1e5; // from the axis to the edge: what num_sincos_turns takes
+
 // x along `across`; the direction is as good as 1e-10 while it is more than 1e-6 rad off the axis.
 static void read_across(struct scene_builder *builder, struct params *params, struct beam *beam) {
   ptrdiff_t count = 3;
@@ -115,15 +117,14 @@ static double grating_integral(double m, double v, double *slope) {
 static void cosine_read(struct scene_builder *builder, struct params *params, struct beam *beam) {
   disc_read(builder, params, beam);
   read_across(builder, params, beam);
-  if (!light_given(params, "float", "wavelength"))
-    params_complain(params, "wavelength", "the cosine profile needs \"float wavelength\"");
-  beam->wavelength = light_positive(params, "wavelength", 1);
+  beam->wavelength = light_positive(params, "wavelength", 0); // no default
   beam->contrast = params_float(params, "contrast", 1);
   if (!(beam->contrast >= 0 && beam->contrast <= 1))
     params_complain(params, "contrast", "\"contrast\" must be between 0 and 1");
-  double slope;
-  beam->integral = grating_integral(beam->contrast, beam->size / beam->wavelength, &slope);
-  if (!isfinite(beam->integral))
+  double periods = beam->size / beam->wavelength, slope;
+  if (periods <= most_periods)
+    beam->integral = grating_integral(beam->contrast, periods, &slope);
+  else
     params_complain(params, "wavelength", "\"wavelength\" is too short for the radius");
 }
 

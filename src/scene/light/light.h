@@ -41,10 +41,13 @@ static inline void light_spectrum(struct params *params, const char *name, doubl
   }
 }
 
-// pbrt-v4 takes a `power` or `illuminance` of zero or less as absent; here it is an error, so that
-// no file means two things. 1 if absent, else the value / divisor.
+// A `power` or `illuminance`: its value / divisor, 1 if absent. pbrt-v4 takes zero or less as
+// absent; here that is an error, so that no file means two things.
 static inline double light_total(struct params *params, const char *name, double divisor) {
-  return light_given(params, "float", name) ? light_positive(params, name, 1) / divisor : 1;
+  double value = params_float(params, name, NAN);
+  if (isnan(value)) return 1;
+  if (value <= 0) params_complain(params, name, "\"%s\" must be greater than zero", name);
+  return value / divisor;
 }
 
 // `from` in world space and the unit vector from there to `to`.
