@@ -19,18 +19,19 @@
 
 #ifdef ASAN
 #include <sanitizer/asan_interface.h>
-enum { RED_ZONE = 32 };
+// Poisoning writes an eighth of the size, so less is reserved.
+enum { RED_ZONE = 32, RESERVE_BITS = 28 };
 static void arena_poison(void *at, size_t n) { ASAN_POISON_MEMORY_REGION(at, n); }
 static void arena_unpoison(void *at, size_t n) { ASAN_UNPOISON_MEMORY_REGION(at, n); }
 #else
-enum { RED_ZONE = 0 };
+enum { RED_ZONE = 0, RESERVE_BITS = 36 };
 static void arena_poison(void *at, size_t n) { (void)at, (void)n; }
 static void arena_unpoison(void *at, size_t n) { (void)at, (void)n; }
 #endif
 
 struct arena arena_reserve(void) {
   // Address space, not memory; where even that is limited (ulimit -v) we take what there is.
-  for (size_t size = (size_t)1 << 36; size >= (size_t)1 << 20; size /= 2) {
+  for (size_t size = (size_t)1 << RESERVE_BITS; size >= (size_t)1 << 20; size /= 2) {
     unsigned char *at = mmap(NULL, size, PROT_READ | PROT_WRITE,
                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (at == MAP_FAILED) continue;
@@ -55,6 +56,7 @@ void *arena_alloc(struct arena *arena, ptrdiff_t count, ptrdiff_t size, ptrdiff_
   unsigned char *at = arena->next + pad;
   arena->next = at + count * size + RED_ZONE;
   arena_unpoison(at, (size_t)(count * size));
+  arena_poison(at + count * size, RED_ZONE); // scratch that is used again was unpoisoned before
   memset(at, 0, (size_t)(count * size));
   return at;
 }
@@ -67,6 +69,7 @@ void *arena_grow(struct arena *arena, void *array, ptrdiff_t old, ptrdiff_t coun
     unsigned char *tail = (unsigned char *)array + old * size;
     arena->next += (count - old) * size;
     arena_unpoison(tail, (size_t)((count - old) * size));
+    arena_poison(tail + (count - old) * size, RED_ZONE);
     memset(tail, 0, (size_t)((count - old) * size));
     return array;
   }
