@@ -1,0 +1,219 @@
+#include "app/cli.h"
+
+#include "base/version.h"
+#include "experiment/keys.h"
+#include "pbrt/suggest.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// An option either sets a key of an experiment (`key`), or is one of the few that do not.
+struct option {
+  const char *name, *value, *key, *about;
+};
+
+static const struct option options[] = {
+    {"output", "PATH", NULL, "where the results go (also -o)"},
+    {"threads", "N", NULL, "threads; default all cores; any number gives the same bits"},
+    {"quiet", NULL, NULL, "no progress"},
+    {"no-skip", "NAMES", NULL, "do not skip: all, or names of 'photonlab list skips'"},
+    {"quality", "NAME", NULL, "default or paper"},
+    {"seed", "SEED", "seed", "a number, or a name that is hashed"},
+    {"integrator", "NAME", "integrator", "see 'photonlab list integrators'"},
+    {"iterations", "N", "iterations", "how many iterations are averaged"},
+    {"spp", "N", "iterations", "samples a pixel: the same as --iterations"},
+    {"photons", "N", "photons", "emitted paths per iteration"},
+    {"radius", "R", "radius", "kernel support of iteration 1, scene units"},
+    {"alpha", "A", "alpha", "fraction kept, in [0, 1]; a number or a ratio"},
+    {"kernel", "NAME", "kernel", "see 'photonlab list kernels'"},
+    {"law", "NAME", "law", "see 'photonlab list laws'"},
+    {"direct", "HOW", "direct", "direct light by photons or nee (next-event estimation)"},
+    {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt"},
+    {"pixel", "WHERE", "pixel", "centre or footprint"},
+};
+enum { N_OPTIONS = sizeof options / sizeof *options };
+
+static const struct command *const commands[] = {
+    &command_run,  &command_fit,  &command_plot,    &command_render,
+    &command_info, &command_list, &command_validate};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+// ---- help ----
+
+static bool takes(const struct command *command, const char *option) {
+  size_t length = strlen(option);
+  for (const char *at = command->options; (at = strstr(at, option)); at += length)
+    if ((at == command->options || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
+      return true;
+  return false;
+}
+
+static void print_help(void) {
+  printf("photonlab measures how progressive photon mapping converges.\n\nusage: photonlab COMMAND "
+         "...\n\n");
+  for (int k = 0; k < N_COMMANDS; k++)
+    printf("  %-9s %-12s %s\n", commands[k]->name, commands[k]->argument ? commands[k]->argument : "",
+           commands[k]->about);
+  printf("\nphotonlab COMMAND --help lists a command's options; photonlab --version the version.\n");
+}
+
+static void print_command_help(const struct command *command) {
+  printf("usage: photonlab %s %s [OPTIONS]\n%s\n\n", command->name,
+         command->argument ? command->argument : "", command->about);
+  for (int k = 0; k < N_OPTIONS; k++) {
+    if (!takes(command, options[k].name)) continue;
+    char left[64];
+    snprintf(left, sizeof left, "--%s%s%s", options[k].name, options[k].value ? " " : "",
+             options[k].value ? options[k].value : "");
+    printf("  %-20s %s\n", left, options[k].about);
+  }
+}
+
+static int usage(const char *format, const char *what, const char *hint) {
+  fputs("photonlab: ", stderr);
+  fprintf(stderr, format, what);
+  if (hint) fprintf(stderr, "; did you mean '%s'?", hint);
+  fputs(" (photonlab --help)\n", stderr);
+  return EXIT_USAGE;
+}
+
+// ---- reading ----
+
+static const struct option *option_find(const char *name, size_t length) {
+  for (int k = 0; k < N_OPTIONS; k++)
+    if (strlen(options[k].name) == length && memcmp(options[k].name, name, length) == 0)
+      return &options[k];
+  return NULL;
+}
+
+static bool read_threads(const char *text, struct cli *cli, struct problem *problem) {
+  char *end;
+  long threads = strtol(text, &end, 10);
+  if (end == text || *end || threads < 1 || threads > 4096)
+    return problem_set(problem, "--threads: '%s' is not a number of threads", text);
+  cli->options.threads = (int)threads;
+  return true;
+}
+
+static bool take(const struct option *option, const char *text, struct cli *cli,
+                 struct problem *problem) {
+  if (option->key) {
+    if (cli->n_settings == CLI_MAX_SETTINGS) return problem_set(problem, "too many options");
+    char *name = arena_format(cli->arena, "--%s", option->name);
+    cli->setting[cli->n_settings++] = (struct cli_setting){name, option->key, text};
+    return true;
+  }
+  if (strcmp(option->name, "output") == 0) cli->output = text;
+  if (strcmp(option->name, "quality") == 0) cli->quality = text;
+  if (strcmp(option->name, "quiet") == 0) cli->options.quiet = true;
+  if (strcmp(option->name, "no-skip") == 0)
+    return skip_read(text, &cli->options.skip_off, problem);
+  if (strcmp(option->name, "threads") == 0) return read_threads(text, cli, problem);
+  return true;
+}
+
+// One option at argv[*at]; 0 or the exit status.
+static int read_option(const struct command *command, char **argv, int argc, int *at,
+                       struct cli *cli, struct problem *problem) {
+  const char *word = argv[*at];
+  bool brief = word[1] != '-';
+  const char *name = brief ? (strcmp(word, "-o") == 0 ? "output" : "") : word + 2;
+  size_t length = strcspn(name, "=");
+  const struct option *option = option_find(name, length);
+  if (!option || !takes(command, option->name)) {
+    const char *names[N_OPTIONS];
+    int n = 0;
+    for (int k = 0; k < N_OPTIONS; k++)
+      if (takes(command, options[k].name)) names[n++] = options[k].name;
+    const char *hint = suggest_name(name, names, n);
+    return usage("unknown option '%s'", word, hint ? arena_format(cli->arena, "--%s", hint) : NULL);
+  }
+  const char *text = name[length] == '=' ? name + length + 1 : NULL;
+  if (!option->value && text) return usage("option '%s' takes no value", word, NULL);
+  if (option->value && !text) {
+    if (++*at == argc) return usage("option '%s' needs a value", word, NULL);
+    text = argv[*at];
+  }
+  take(option, text, cli, problem);
+  return 0;
+}
+
+static int read_arguments(const struct command *command, int argc, char **argv, struct cli *cli,
+                          struct problem *problem) {
+  for (int at = 2; at < argc; at++) {
+    if (argv[at][0] == '-' && argv[at][1]) {
+      int status = read_option(command, argv, argc, &at, cli, problem);
+      if (status) return status;
+    } else if (!command->argument || cli->argument) {
+      return usage("unexpected argument '%s'", argv[at], NULL);
+    } else {
+      cli->argument = argv[at];
+    }
+  }
+  if (command->argument && command->argument[0] != '[' && !cli->argument)
+    return usage("%s is missing", command->argument, NULL);
+  return 0;
+}
+
+const char *cli_setting_of(const struct cli *cli, const char *key) {
+  for (int k = cli->n_settings - 1; k >= 0; k--)
+    if (strcmp(cli->setting[k].key, key) == 0) return cli->setting[k].text;
+  return NULL;
+}
+
+bool cli_apply(const struct cli *cli, struct cell *cell, struct problem *problem) {
+  for (int s = 0; s < cli->n_settings; s++) {
+    const struct cli_setting *setting = &cli->setting[s];
+    struct node node = {.kind = NODE_SCALAR,
+                        .place = {.file = "command line"},
+                        .text = setting->text};
+    struct reading reading = {cli->arena, problem, setting->option};
+    for (int k = 0; k < n_experiment_keys; k++)
+      if (strcmp(experiment_keys[k].name, setting->key) == 0 &&
+          !experiment_keys[k].read(&reading, &node, cell))
+        return false;
+  }
+  return true;
+}
+
+static bool wants_help(int argc, char **argv) {
+  for (int at = 2; at < argc; at++)
+    if (strcmp(argv[at], "--help") == 0 || strcmp(argv[at], "-h") == 0) return true;
+  return false;
+}
+
+int cli_main(int argc, char **argv) {
+  const char *word = argc > 1 ? argv[1] : "--help";
+  if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
+    print_help();
+    return argc > 1 ? 0 : EXIT_USAGE;
+  }
+  if (strcmp(word, "--version") == 0) {
+    printf("photonlab %s\n", photonlab_version);
+    return 0;
+  }
+  const char *names[N_COMMANDS];
+  const struct command *command = NULL;
+  for (int k = 0; k < N_COMMANDS; k++) {
+    names[k] = commands[k]->name;
+    if (strcmp(word, names[k]) == 0) command = commands[k];
+  }
+  if (!command) return usage("unknown command '%s'", word, suggest_name(word, names, N_COMMANDS));
+  if (wants_help(argc, argv)) {
+    print_command_help(command);
+    return 0;
+  }
+  struct arena arena = arena_reserve();
+  struct cli cli = {.arena = &arena};
+  struct problem problem = {0};
+  int status = read_arguments(command, argc, argv, &cli, &problem);
+  if (!status && !problem.text[0]) status = command->run(&cli, &problem);
+  if (problem.text[0]) {
+    fprintf(stderr, "photonlab: %s\n", problem.text);
+    status = 1;
+  }
+  if (fflush(stdout) != 0) die("cannot write to standard output");
+  return status;
+}

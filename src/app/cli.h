@@ -1,0 +1,43 @@
+// The command line: one table of commands, one table of options.
+#ifndef APP_CLI_H
+#define APP_CLI_H
+
+#include "base/arena.h"
+#include "base/problem.h"
+#include "run/plan.h"
+
+enum { EXIT_USAGE = 2, CLI_MAX_SETTINGS = 32 };
+
+// What was said on the command line.
+struct cli {
+  const char *argument;            // the file or directory the command is about, or NULL
+  const char *output, *quality;    // NULL: not said
+  struct run_options options;
+  struct cli_setting {             // keys of an experiment, in the order given
+    const char *option, *key, *text;
+  } setting[CLI_MAX_SETTINGS];
+  int n_settings;
+  struct arena *arena;
+};
+
+struct command {
+  const char *name;
+  const char *argument; // "SCENE", shown in the usage; "[WHAT]": may be left out; NULL: none
+  const char *about;
+  const char *options;  // names of the options it takes, separated by spaces
+  int (*run)(struct cli *, struct problem *); // the exit status; with a problem set: 1
+};
+
+// Applies the settings to a cell through the experiment's own readers.
+bool cli_apply(const struct cli *, struct cell *, struct problem *);
+
+// The text said for a key, or NULL.
+const char *cli_setting_of(const struct cli *, const char *key);
+
+// The program; returns the exit status: 0, 1 (a problem), 2 (usage), 128 + signal (interrupted).
+int cli_main(int argc, char **argv);
+
+extern const struct command command_run, command_fit, command_plot, command_render, command_info,
+    command_list, command_validate;
+
+#endif

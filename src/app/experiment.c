@@ -1,0 +1,89 @@
+// photonlab run, fit, plot: an experiment from its file to its figure.
+#define _GNU_SOURCE // readlink
+#include "analysis/fit.h"
+#include "app/cli.h"
+#include "base/file.h"
+#include "run/interrupt.h"
+#include "run/run.h"
+
+#include <spawn.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static int run(struct cli *cli, struct problem *problem) {
+  const char *quality = cli->quality ? cli->quality : "default";
+  struct experiment experiment;
+  if (!experiment_read(cli->argument, quality, cli->arena, &experiment, problem)) return 1;
+  for (int c = 0; c < experiment.n_cells; c++)
+    if (!cli_apply(cli, &experiment.cell[c], problem)) return 1;
+  const char *directory =
+      cli->output ? cli->output : arena_format(cli->arena, "results/%s", experiment.name);
+  switch (run_experiment(&experiment, directory, cli->options, cli->arena, problem)) {
+  case RUN_DONE: printf("%s\n", directory); return 0;
+  case RUN_INTERRUPTED: return 128 + interrupt_signal();
+  default: return 1;
+  }
+}
+
+static int fit(struct cli *cli, struct problem *problem) {
+  struct results results;
+  struct fit fit;
+  if (!results_read(cli->argument, cli->arena, &results, problem) ||
+      !fit_results(&results, cli->arena, &fit, problem) ||
+      !fit_write_json(&fit, arena_format(cli->arena, "%s/fit.json", cli->argument), problem) ||
+      !fit_write_curves(&fit, arena_format(cli->arena, "%s/curves.csv", cli->argument), problem))
+    return 1;
+  fit_print_table(&fit, stdout);
+  return 0;
+}
+
+// The figure's script: in the working directory, or where `make install` puts it.
+static char *figure_script(const char *name, struct arena *arena, struct problem *problem) {
+  char *here = arena_format(arena, "paper-figures/%s.gp", name);
+  if (file_exists(here)) return here;
+  char self[4096];
+  ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+  if (length > 0) {
+    self[length] = 0;
+    char *slash = strrchr(self, '/');
+    *slash = 0;
+    char *installed = arena_format(arena, "%s/../share/photonlab/%s", self, here);
+    if (file_exists(installed)) return installed;
+  }
+  problem_set(problem, "%s: there is no figure for this experiment", here);
+  return NULL;
+}
+
+static int plot(struct cli *cli, struct problem *problem) {
+  struct results results;
+  if (!results_read(cli->argument, cli->arena, &results, problem)) return 1;
+  char *script = figure_script(results.experiment.name, cli->arena, problem);
+  char *figures = arena_format(cli->arena, "%s/figures", cli->argument);
+  if (!script || !file_make_directory(figures, problem)) return 1;
+  char *const words[] = {"gnuplot", "-c", script, (char *)cli->argument, NULL};
+  pid_t child;
+  int status;
+  if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) != 0 ||
+      waitpid(child, &status, 0) != child)
+    return problem_set(problem, "cannot run gnuplot: is it installed?"), 1;
+  if (status != 0)
+    return problem_set(problem, "%s: gnuplot failed; is %s/curves.csv there (photonlab fit)?",
+                       script, cli->argument), 1;
+  printf("%s\n", figures);
+  return 0;
+}
+
+const struct command command_run = {
+    "run", "EXPERIMENT", "runs an experiment file, into results/NAME or -o DIR",
+    "output threads quiet no-skip quality seed", run};
+
+const struct command command_fit = {
+    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv", "quiet threads",
+    fit};
+
+const struct command command_plot = {
+    "plot", "DIR", "draws the experiment's figure from the results in DIR", "quiet", plot};

@@ -1,0 +1,114 @@
+// photonlab list, info, validate: what is registered, what a scene holds, whether the tables are right.
+#include "app/cli.h"
+#include "app/validate.h"
+#include "pbrt/suggest.h"
+#include "scene/info.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void list_laws(void) {
+  for (int k = 0; k < n_laws; k++)
+    printf("  %-15s %s\n  %15s   %s\n", laws[k].name, laws[k].formula, "", laws[k].source);
+}
+
+static void list_kernels(void) {
+  for (int k = 0; k < n_kernels; k++) {
+    struct kernel_constants c = kernels[k].constants(2);
+    printf("  %-15s %-42s in the plane: c %.6f, mu2 %.6f, R %.6f\n  %15s   %s\n", kernels[k].name,
+           kernels[k].formula, c.c, c.mu2, c.roughness, "", kernels[k].source);
+  }
+}
+
+static void list_integrators(void) {
+  for (int k = 0; integrator_types[k]; k++)
+    printf("  %-15s %s\n  %15s   %s\n", integrator_types[k]->name, integrator_types[k]->about, "",
+           integrator_types[k]->source);
+}
+
+static void list_shapes(void) {
+  for (int k = 0; shape_types[k]; k++)
+    printf("  %-15s %s\n", shape_types[k]->name, shape_types[k]->about);
+}
+
+static void list_materials(void) {
+  for (int k = 0; material_types[k]; k++)
+    printf("  %-15s %s\n", material_types[k]->name, material_types[k]->about);
+}
+
+static void list_lights(void) {
+  for (int k = 0; light_types[k]; k++)
+    printf("  %-15s %s\n", light_types[k]->name, light_types[k]->about);
+}
+
+static void list_skips(void) {
+  for (int k = 0; k < n_skip_rows; k++)
+    printf("  %-15s %s\n", skip_rows[k].name, skip_rows[k].about);
+}
+
+static void list_experiment(void) {
+  for (int k = 0; k < n_experiment_keys; k++)
+    printf("  %-15s %-24s %s\n", experiment_keys[k].name, experiment_keys[k].fallback,
+           experiment_keys[k].meaning);
+}
+
+static void list_log(void) {
+  for (int k = 0; k < n_log_columns; k++)
+    printf("  %-15s %-18s %s\n", log_columns[k].name, log_columns[k].unit, log_columns[k].meaning);
+}
+
+static const struct {
+  const char *name, *about;
+  void (*print)(void);
+} lists[] = {
+    {"integrators", "what one iteration computes", list_integrators},
+    {"laws", "radius sequences, rho_i = r_i^d / r_1^d", list_laws},
+    {"kernels", "psi on the unit ball; u = distance / radius", list_kernels},
+    {"shapes", "of scene files", list_shapes},
+    {"materials", "of scene files", list_materials},
+    {"lights", "of scene files", list_lights},
+    {"skips", "what is left out where a scene does not need it", list_skips},
+    {"experiment", "keys of an experiment file: name, default, meaning", list_experiment},
+    {"log", "columns of log.csv: name, unit, meaning", list_log},
+};
+enum { N_LISTS = sizeof lists / sizeof *lists };
+
+static int list(struct cli *cli, struct problem *problem) {
+  const char *names[N_LISTS];
+  bool found = false;
+  for (int k = 0; k < N_LISTS; k++) {
+    names[k] = lists[k].name;
+    if (cli->argument && strcmp(cli->argument, lists[k].name) != 0) continue;
+    printf("%s: %s\n", lists[k].name, lists[k].about);
+    lists[k].print();
+    found = true;
+  }
+  if (found) return 0;
+  const char *hint = suggest_name(cli->argument, names, N_LISTS);
+  problem_set(problem, "there is no list '%s'%s%s%s", cli->argument, hint ? "; did you mean '" : "",
+              hint ? hint : "", hint ? "'?" : "");
+  return EXIT_USAGE;
+}
+
+static int info(struct cli *cli, struct problem *problem) {
+  struct scene scene;
+  if (!scene_read(cli->argument, cli->arena, &scene, problem)) return 1;
+  scene_info(&scene, stdout);
+  return 0;
+}
+
+static int validate(struct cli *cli, struct problem *problem) {
+  (void)cli, (void)problem;
+  return validate_run(stdout) ? 0 : 1;
+}
+
+const struct command command_list = {"list", "[WHAT]", "what is registered: laws, kernels, ...", "",
+                                     list};
+
+const struct command command_info = {"info", "SCENE",
+                                     "what a scene holds and which features it lets us skip",
+                                     "quiet threads", info};
+
+const struct command command_validate = {
+    "validate", NULL, "checks radius laws, kernels and functions against theory's values", "quiet",
+    validate};

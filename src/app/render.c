@@ -1,0 +1,115 @@
+// photonlab render: a picture of a scene by one integrator.
+#include "app/cli.h"
+#include "density/grid.h"
+#include "run/interrupt.h"
+#include "run/render.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+// One thing the scene file may say, in the words of an experiment's key; NULL: it says nothing.
+static bool say(struct cli *scene, const char *key, const char *text) {
+  if (text && scene->n_settings < CLI_MAX_SETTINGS)
+    scene->setting[scene->n_settings++] = (struct cli_setting){key, key, text};
+  return text != NULL;
+}
+
+static char *number(struct arena *arena, double value, bool said) {
+  return said ? arena_format(arena, "%.17g", value) : NULL;
+}
+
+// The scene file's settings first, then the command line's, through the same readers.
+static bool cell_read(const struct cli *cli, const struct scene *scene, struct cell *cell,
+                      struct problem *problem) {
+  const struct scene_settings *file = &scene->settings;
+  struct arena *arena = cli->arena;
+  struct cli said = {.arena = arena};
+  uint64_t iterations = (uint64_t)(file->iterations ? file->iterations : file->spp);
+  say(&said, "integrator", file->integrator ? file->integrator : "path");
+  say(&said, "law", file->law ? file->law : "knaus-zwicker");
+  say(&said, "kernel", file->kernel ? file->kernel : "box");
+  say(&said, "alpha", isnan(file->alpha) ? "2/3" : number(arena, file->alpha, true));
+  say(&said, "radius", number(arena, file->radius, !isnan(file->radius)));
+  say(&said, "photons", arena_format(arena, "%" PRId64, file->photons ? file->photons : 65536));
+  say(&said, "iterations", arena_format(arena, "%" PRIu64, iterations));
+  say(&said, "seed", arena_format(arena, "%" PRId64, file->seed < 0 ? 0 : file->seed));
+  say(&said, "direct", file->direct ? file->direct : "photons");
+  say(&said, "depth", arena_format(arena, "%d", file->max_depth));
+  say(&said, "pixel", file->centre ? "centre" : "footprint");
+  *cell = (struct cell){.radius = NAN};
+  return cli_apply(&said, cell, problem) && cli_apply(cli, cell, problem);
+}
+
+static bool check(const struct cell *cell, const struct scene *scene, struct problem *problem) {
+  if (!cell->integrator->photons) return true;
+  if (isnan(cell->radius))
+    return problem_set(problem, "%s: integrator %s needs a radius, say --radius R (scene units)",
+                       scene->path, cell->integrator->name);
+  double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
+  return grid_radius_is_resolved(scene->bounds, last, problem);
+}
+
+static struct measurement measure_film(const struct cell *cell, const struct scene *scene,
+                                       const struct bvh *bvh, struct estimator *estimator,
+                                       unsigned skip_off, struct arena *arena) {
+  int width = scene->camera.width, n = width * scene->camera.height;
+  struct pixel *pixel = arena_new(arena, struct pixel, n);
+  for (int j = 0; j < n; j++) pixel[j] = (struct pixel){j % width, j / width};
+  *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
+  struct measurement measure = {.scene = scene,
+                                .bvh = bvh,
+                                .features = scene_features(scene),
+                                .pixel = pixel,
+                                .n_points = n,
+                                .n_replicas = 1,
+                                .footprint = cell->footprint,
+                                .nee = cell->direct == DIRECT_NEE,
+                                .depth = cell->depth,
+                                .n_emitted = cell->photons,
+                                .seed = cell->seed,
+                                .estimator = estimator,
+                                .n_estimators = 1,
+                                .skip_off = skip_off};
+  if (skip_off & SKIP_GRAY) measure.features.n_channels = 3;
+  return measure;
+}
+
+static char *manifest_of(const struct cell *cell, const struct scene *scene, struct arena *arena) {
+  return arena_format(
+      arena,
+      "{\"scene_hash\": \"%016" PRIx64 "\", \"integrator\": \"%s\", \"kernel\": \"%s\", "
+      "\"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, \"photons\": %" PRIu64
+      ", \"iterations\": %" PRIu64 ", \"seed\": \"%016" PRIx64 "\", \"depth\": %d}",
+      scene->hash, cell->integrator->name, cell->kernel->name, cell->law->name, cell->alpha,
+      isnan(cell->radius) ? 0 : cell->radius, cell->photons, cell->iterations, cell->seed,
+      cell->depth);
+}
+
+static int render(struct cli *cli, struct problem *problem) {
+  struct scene scene;
+  struct cell cell;
+  if (!scene_read(cli->argument, cli->arena, &scene, problem)) return 1;
+  const char *output = cli->output ? cli->output : scene.settings.filename;
+  if (!output) return problem_set(problem, "say where the picture goes: -o FILE.exr"), 1;
+  if (!image_can_write(output, problem) || !cell_read(cli, &scene, &cell, problem) ||
+      !check(&cell, &scene, problem))
+    return 1;
+  struct bvh *bvh = bvh_build(&scene, (struct bvh_options){0}, cli->arena);
+  struct estimator estimator;
+  struct measurement measure =
+      measure_film(&cell, &scene, bvh, &estimator, cli->options.skip_off, cli->arena);
+  struct image image;
+  if (!render_image(cell.integrator, &measure, cell.iterations, cli->options, cli->arena, &image)) {
+    fprintf(stderr, "photonlab: interrupted, no picture was written\n");
+    return 128 + interrupt_signal();
+  }
+  image.manifest = manifest_of(&cell, &scene, cli->arena);
+  return image_write(output, &image, problem) ? 0 : 1;
+}
+
+const struct command command_render = {
+    "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png}",
+    "output integrator spp iterations photons radius alpha kernel law direct maxdepth pixel seed "
+    "threads quiet no-skip",
+    render};

@@ -1,0 +1,75 @@
+#include "run/render.h"
+
+#include "run/interrupt.h"
+#include "run/progress.h"
+
+#include <assert.h>
+#include <omp.h>
+
+enum { ITERATIONS_PER_THREAD = 4 }; // computed before they are merged in order
+
+// Iterations first, first + 1, ... in parallel, each into a frame of its own.
+static void compute_round(const struct integrator_type *integrator, void *const *state,
+                          uint64_t first, int count, long size, double *frames, int threads) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (int k = 0; k < count; k++)
+    if (!interrupt_signal())
+      integrator->step(state[omp_get_thread_num()], first + (uint64_t)k, frames + k * size);
+}
+
+static void push_round(struct moments_tree *tree, const double *frames, int count, long size,
+                       struct moments *leaf, struct arena *arena) {
+  for (int k = 0; k < count; k++) {
+    for (long j = 0; j < size; j++) leaf[j] = moments_of(frames[k * size + j]);
+    moments_tree_push(tree, leaf, arena);
+  }
+}
+
+static struct image image_of(const struct measurement *measure, const struct moments *moments,
+                             struct arena *arena) {
+  static const char *const names[] = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  const struct camera *camera = &measure->scene->camera;
+  int n_channels = measure->features.n_channels;
+  struct image image = image_new(camera->width, camera->height, 6, names, arena);
+  for (long j = 0; j < measure->n_points; j++)
+    for (int c = 0; c < 3; c++) {
+      struct moments m = moments[j * n_channels + (n_channels == 3 ? c : 0)];
+      image.plane[c][j] = (float)m.mean;
+      image.plane[3 + c][j] = m.n > 1 ? (float)moments_se2(m) : NAN;
+    }
+  return image;
+}
+
+bool render_image(const struct integrator_type *integrator, const struct measurement *measure,
+                  uint64_t iterations, struct run_options options, struct arena *arena,
+                  struct image *image) {
+  assert(integrator->independent);
+  int threads = options.threads ? options.threads : omp_get_max_threads();
+  int round = threads * ITERATIONS_PER_THREAD;
+  long size = (long)measure->n_points * measure->features.n_channels;
+  struct moments *moments = arena_new(arena, struct moments, size);
+  double *frames = arena_new(arena, double, size * round);
+  struct moments_tree tree = moments_tree_new(size, arena);
+  void **state = arena_new(arena, void *, threads);
+  struct arena *own = arena_new(arena, struct arena, threads), *kept = arena_new(arena, struct arena, threads);
+  for (int t = 0; t < threads; t++) {
+    own[t] = kept[t] = arena_reserve();
+    state[t] = integrator->new(measure, &own[t]);
+    integrator->begin(state[t], 1);
+  }
+  interrupt_install();
+  struct progress progress = progress_begin("render", (double)iterations, 0, options.quiet);
+  for (uint64_t first = 1; first <= iterations && !interrupt_signal(); first += (uint64_t)round) {
+    uint64_t left = iterations - first + 1;
+    int count = left < (uint64_t)round ? (int)left : round;
+    compute_round(integrator, state, first, count, size, frames, threads);
+    push_round(&tree, frames, count, size, moments, arena);
+    progress_advance(&progress, count);
+  }
+  progress_end(&progress);
+  for (int t = 0; t < threads; t++) arena_release(kept[t]);
+  if (interrupt_signal()) return false;
+  moments_tree_root(&tree, moments);
+  *image = image_of(measure, moments, arena);
+  return true;
+}
