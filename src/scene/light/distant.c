@@ -10,9 +10,8 @@ struct distant {
   double irradiance[3];   // perpendicular, W m^-2
 };
 
-// The disc touches the bounding sphere where the light comes from. An empty scene has R = 0.
+// The disc touches the bounding sphere where the light comes from.
 static double place_disc(const struct scene *scene, struct distant *distant) {
-  if (scene->n_primitives == 0) return 0;
   const float *lo = scene->bounds.lo, *hi = scene->bounds.hi;
   struct vec low = vec(lo[0], lo[1], lo[2]), high = vec(hi[0], hi[1], hi[2]);
   double radius = vec_length(vec_sub(high, low)) / 2;
