@@ -130,6 +130,7 @@ static bool parse_matrix(struct reader *reader, struct call *call) {
 static bool parse_name(struct reader *reader, struct arena *arena, struct call *call) {
   if (!expect(reader, call, TOKEN_STRING, "a name in quotes")) return false;
   call->type = lexer_string(&reader->lexer.token, arena);
+  call->type_place = reader->lexer.token.place;
   return lexer_advance(&reader->lexer);
 }
 
@@ -174,26 +175,27 @@ static bool read_directives(struct reader *reader, struct arena scratch) {
   return true;
 }
 
-static bool read_file(struct reader *reader, const char *path, struct arena scratch) {
-  struct text text;
-  if (!file_read(path, &reader->text, &text, reader->problem)) return false;
-  reader->builder.scene->hash = XXH64(text.data, (size_t)text.length, 0);
-  reader->lexer = lexer_begin(path, text, reader->problem);
-  return read_directives(reader, scratch) && scene_finish(reader);
+bool scene_read_text(const char *path, struct text text, struct arena *arena, struct arena lists,
+                     struct arena scratch, struct scene *scene, struct problem *problem) {
+  *scene = (struct scene){.path = arena_string(arena, path, (ptrdiff_t)strlen(path)),
+                          .hash = XXH64(text.data, (size_t)text.length, 0)};
+  struct reader reader = {.lexer = lexer_begin(scene->path, text, problem),
+                          .builder = {.arena = arena, .scene = scene},
+                          .problem = problem,
+                          .lists = lists,
+                          .now = {.world_from_object = transform_identity()}};
+  read_default_options(&reader);
+  read_default_material(&reader);
+  return read_directives(&reader, scratch) && scene_finish(&reader);
 }
 
 bool scene_read(const char *path, struct arena *arena, struct scene *scene,
                 struct problem *problem) {
-  *scene = (struct scene){.path = arena_string(arena, path, (ptrdiff_t)strlen(path))};
-  struct arena text = arena_reserve(), scratch = arena_reserve();
-  struct reader reader = {.builder = {.arena = arena, .scene = scene},
-                          .problem = problem,
-                          .text = text,
-                          .now = {.world_from_object = transform_identity()}};
-  read_default_options(&reader);
-  read_default_material(&reader);
-  bool ok = read_file(&reader, scene->path, scratch);
+  struct arena own = arena_reserve(), scratch = arena_reserve(), lists = own;
+  struct text text;
+  bool ok = file_read(path, &lists, &text, problem) &&
+            scene_read_text(path, text, arena, lists, scratch, scene, problem);
   arena_release(scratch);
-  arena_release(text);
+  arena_release(own);
   return ok;
 }

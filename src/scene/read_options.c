@@ -21,7 +21,7 @@ static bool only_once(struct reader *reader, const struct call *call, struct pla
 }
 
 static bool wrong_type(struct reader *reader, const struct call *call, const char *advice) {
-  return problem_at(reader->problem, call->place, "%s \"%s\" is not in this version; %s",
+  return problem_at(reader->problem, call->type_place, "%s \"%s\" is not in this version; %s",
                     call->name, call->type, advice);
 }
 

@@ -68,7 +68,7 @@ bool read_concat_transform(struct reader *reader, struct call *call) {
 }
 
 bool read_attribute_begin(struct reader *reader, struct call *call) {
-  *arena_push(&reader->text, &reader->saved) = (struct saved_attributes){reader->now, call->place};
+  *arena_push(&reader->lists, &reader->saved) = (struct saved_attributes){reader->now, call->place};
   return true;
 }
 

@@ -15,7 +15,7 @@ static bool unknown_type(struct reader *reader, const struct call *call, const c
   for (int i = 0; i < n && used < sizeof list; i++)
     used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
   const char *nearest = suggest_name(call->type, names, n);
-  return problem_at(reader->problem, call->place,
+  return problem_at(reader->problem, call->type_place,
                     "%s \"%s\" is not in this version%s%s%s (known: %s)", call->name, call->type,
                     nearest ? "; did you mean \"" : "", nearest ? nearest : "",
                     nearest ? "\"?" : "", list);
@@ -58,7 +58,7 @@ static const struct light_type *find_light(struct reader *reader, const struct c
 
 static void add_pending_light(struct reader *reader, const struct light_type *type,
                               const struct params *params, uint32_t shape) {
-  *arena_push(&reader->text, &reader->lights) =
+  *arena_push(&reader->lists, &reader->lights) =
       (struct pending_light){.type = type,
                              .params = *params,
                              .world_from_object = reader->now.world_from_object,

@@ -38,7 +38,7 @@ struct reader {
   struct lexer lexer;
   struct scene_builder builder;
   struct problem *problem;
-  struct arena text; // what lives as long as the reader: the files' text, lists
+  struct arena lists; // what lives as long as the reader
   struct attributes now;
   struct {
     struct saved_attributes *item;
@@ -58,8 +58,9 @@ struct reader {
 // One directive as it stands in the file.
 struct call {
   struct place place;
-  const char *name;     // "Translate"
-  const char *type;     // `Shape "sphere"` -> "sphere"; NULL if it has none
+  const char *name; // "Translate"
+  const char *type; // `Shape "sphere"` -> "sphere"; NULL if it has none
+  struct place type_place;
   double number[16];    // Translate, Transform, ...
   struct params params; // of directives with a type
 };
@@ -102,6 +103,10 @@ bool read_area_light_source(struct reader *, struct call *);
 void read_default_options(struct reader *);
 bool read_finish_options(struct reader *);
 void read_default_material(struct reader *);
+
+// scene_read on the file's text; `lists` and `scratch` are free again when it returns.
+bool scene_read_text(const char *path, struct text, struct arena *, struct arena lists,
+                     struct arena scratch, struct scene *, struct problem *);
 
 // Tables and lights, when every directive has been read.
 bool scene_finish(struct reader *);
