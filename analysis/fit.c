@@ -1,0 +1,164 @@
+#include "analysis/fit.h"
+
+#include "analysis/fit_rows.h"
+#include "analysis/special.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *const verdict_names[] = {"agree", "disagree", "not-detected", "not-resolvable"};
+
+static const double family_wise_level = 0.01;
+
+// ---- verdicts ----
+
+static bool rejects(const struct fit_row *row, bool lack_of_fit) {
+  for (int t = 0; t < row->n_tests; t++)
+    if (row->test[t].rejects && lack_of_fit == (strcmp(row->test[t].name, "lack-of-fit") == 0))
+      return true;
+  return false;
+}
+
+// Theory's statement about a scene without closed form is asymptotic: that its first terms do not
+// describe the first iterations is no contradiction, but then the rate rests on nothing.
+static enum verdict row_verdict(const struct fit_row *row) {
+  if (rejects(row, false) || (row->closed_form && rejects(row, true))) return VERDICT_DISAGREE;
+  if (rejects(row, true)) return VERDICT_NOT_RESOLVABLE;
+  if (row->quantity == QUANTITY_BIAS && !row->detected && isfinite(row->snr))
+    return VERDICT_NOT_DETECTED;
+  return row->resolved ? VERDICT_AGREE : VERDICT_NOT_RESOLVABLE;
+}
+
+// A bias that theory says must show (twice the threshold of detection) and does not is not evidence
+// for theory, even where its coefficient is not rejected.
+static bool missed(const struct fit_row *row) {
+  return row->verdict == VERDICT_NOT_DETECTED && row->expected_snr >= 2 * fit_detection_snr;
+}
+
+// Any disagreement decides; otherwise the run agrees if any row does and none is missed. Rows that
+// cannot tell do not spoil those that can.
+static enum verdict run_verdict(const struct fit *fit) {
+  int count[4] = {0};
+  bool any_missed = false;
+  for (int r = 0; r < fit->n_rows; r++) {
+    count[fit->row[r].verdict]++;
+    any_missed |= missed(&fit->row[r]);
+  }
+  if (count[VERDICT_DISAGREE]) return VERDICT_DISAGREE;
+  if (any_missed) return VERDICT_NOT_RESOLVABLE;
+  if (count[VERDICT_AGREE]) return VERDICT_AGREE;
+  return count[VERDICT_NOT_DETECTED] ? VERDICT_NOT_DETECTED : VERDICT_NOT_RESOLVABLE;
+}
+
+static void judge(struct fit *fit) {
+  int n_tests = 0;
+  for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests;
+  fit->level = family_wise_level;
+  fit->test_level = n_tests ? -expm1(log1p(-fit->level) / n_tests) : fit->level;
+  for (int r = 0; r < fit->n_rows; r++) {
+    struct fit_row *row = &fit->row[r];
+    for (int t = 0; t < row->n_tests; t++) row->test[t].rejects = row->test[t].p < fit->test_level;
+    row->verdict = row_verdict(row);
+  }
+  fit->verdict = run_verdict(fit);
+}
+
+void fit_predicted(const struct results *results, const struct prediction *prediction,
+                   struct arena *arena, struct fit *fit) {
+  int max_points = 0;
+  for (int s = 0; s < results->n_series; s++) max_points += 2 * results->series[s].n_checkpoints;
+  *fit = (struct fit){
+      .experiment = &results->experiment,
+      .row = arena_new(arena, struct fit_row, 2 * results->n_series),
+      .point = arena_new(arena, struct fit_point, max_points),
+  };
+  for (int s = 0; s < results->n_series; s++)
+    fit_series(results, &results->series[s], &prediction[s], *arena, fit);
+  judge(fit);
+}
+
+// ---- predictions for a results directory ----
+
+// What several series share is made once.
+struct shared {
+  struct scenes {
+    struct known_scene {
+      const char *path;
+      struct scene scene;
+    } * item;
+    ptrdiff_t count, capacity;
+  } scenes;
+  struct tables {
+    struct family_table **item;
+    ptrdiff_t count, capacity;
+  } tables;
+  struct families {
+    struct known_family {
+      double alpha;
+      struct family family;
+    } * item;
+    ptrdiff_t count, capacity;
+  } families;
+};
+
+static const struct scene *shared_scene(struct shared *shared, const struct results *results,
+                                        const struct cell *cell, struct arena *arena,
+                                        struct problem *problem) {
+  struct scenes *scenes = &shared->scenes;
+  for (ptrdiff_t k = 0; k < scenes->count; k++)
+    if (strcmp(scenes->item[k].path, cell->scene_path) == 0) return &scenes->item[k].scene;
+  struct known_scene *known = arena_push(arena, scenes);
+  *known = (struct known_scene){.path = cell->scene_path};
+  if (!scene_read(cell->scene_path, arena, &known->scene, problem)) return NULL;
+  if (known->scene.hash != results->scene_hash[cell->number]) {
+    problem_set(problem, "%s: has changed since %s was made; run the experiment again",
+                cell->scene_path, results->directory);
+    return NULL;
+  }
+  return &known->scene;
+}
+
+// Radii that follow the photons found do so, in expectation, as Knaus and Zwicker's (theory 2.4).
+static const struct law *law_of(const struct cell *cell) {
+  if (!cell->integrator->photons) return NULL;
+  return cell->integrator->independent ? cell->law : law_find("knaus-zwicker");
+}
+
+static const struct family *shared_family(struct shared *shared, const struct cell *cell,
+                                          uint64_t n, struct arena *arena) {
+  const struct law *law = law_of(cell);
+  for (ptrdiff_t k = 0; k < shared->families.count; k++) {
+    struct known_family *known = &shared->families.item[k];
+    if (known->family.table->law == law && known->family.n == n && known->alpha == cell->alpha)
+      return &known->family;
+  }
+  struct family_table *table = NULL;
+  for (ptrdiff_t k = 0; k < shared->tables.count; k++)
+    if (shared->tables.item[k]->law == law && shared->tables.item[k]->n == n)
+      table = shared->tables.item[k];
+  if (!table) {
+    table = arena_new(arena, struct family_table, 1);
+    *table = family_table_new(law, n, arena);
+    *arena_push(arena, &shared->tables) = table;
+  }
+  struct known_family *known = arena_push(arena, &shared->families);
+  *known = (struct known_family){cell->alpha, family_new(table, cell->alpha, arena)};
+  return &known->family;
+}
+
+bool fit_results(const struct results *results, struct arena *arena, struct fit *fit,
+                 struct problem *problem) {
+  struct shared shared = {0};
+  struct prediction *prediction = arena_new(arena, struct prediction, results->n_series);
+  for (int s = 0; s < results->n_series; s++) {
+    const struct series *series = &results->series[s];
+    const struct cell *cell = &results->experiment.cell[series->cell];
+    const struct scene *scene = shared_scene(&shared, results, cell, arena, problem);
+    if (!scene) return false;
+    const struct family *family = shared_family(&shared, cell, series->n_iterations, arena);
+    prediction[s] =
+        prediction_new(scene, cell, &results->probe[series->cell][series->probe], family, arena);
+  }
+  fit_predicted(results, prediction, arena, fit);
+  return true;
+}

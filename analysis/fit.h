@@ -1,0 +1,78 @@
+// The statistics of an experiment: per cell, probe and quantity a rate, a coefficient, named tests
+// and a verdict (theory 4.4-4.7).
+#ifndef ANALYSIS_FIT_H
+#define ANALYSIS_FIT_H
+
+#include "analysis/fit_bias.h"
+#include "analysis/fit_variance.h"
+#include "analysis/prediction.h"
+#include "log/results.h"
+
+#include <stdio.h>
+
+enum verdict {
+  VERDICT_AGREE,
+  VERDICT_DISAGREE,       // a test rejects theory at the level of the run
+  VERDICT_NOT_DETECTED,   // bias: nothing found; upper_bound says how much there may be
+  VERDICT_NOT_RESOLVABLE, // too little is known of the rate to judge it
+};
+extern const char *const verdict_names[];
+
+struct fit_test {
+  const char *name; // "rate", "coefficient", "independence", "lack-of-fit", "zero-bias"
+  double statistic, p;
+  bool rejects;
+};
+enum { FIT_TESTS = 4 };
+
+// Numbers that are not known are NAN. Variance: rate a of Var(average of N) ~ N^-a, coefficient A
+// [radiance^2], the variance of the first iteration without its part that stays constant. Bias:
+// |bias of iteration i| ~ i^-rate, coefficient b_1 [radiance], the bias of the first iteration
+// (without a closed form: the part of it that is proportional to r^2).
+struct fit_row {
+  const struct cell *cell;
+  const struct probe *probe;
+  enum quantity quantity;
+  bool closed_form;
+  double rate_theory, rate, rate_se, rate_lo, rate_hi; // 95 % interval
+  double coefficient_theory, coefficient, coefficient_se;
+  double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, |b_1| + 1.96 SE
+  struct fit_test test[FIT_TESTS];
+  int n_tests;
+  bool resolved, detected;
+  enum verdict verdict;
+};
+
+// The measured curve of the average beside the predicted one.
+struct fit_point {
+  const struct fit_row *row;
+  uint64_t n;                    // iterations averaged
+  double measured, lower, upper; // over runs, 95 % interval
+  double pooled;                 // variance only: from the iterations' variances; else NAN
+  double predicted;
+};
+
+struct fit {
+  const struct experiment *experiment;
+  double level;      // family-wise: the chance that any test of the run rejects a true theory
+  double test_level; // of one test (Sidak)
+  struct fit_row *row;
+  int n_rows;
+  struct fit_point *point;
+  int n_points;
+  enum verdict verdict;
+};
+
+// Reads the scenes of the experiment for their closed forms; one that was changed since the run is
+// a problem.
+bool fit_results(const struct results *, struct arena *, struct fit *, struct problem *);
+
+// The same with predictions in hand, one per series (in results' order).
+void fit_predicted(const struct results *, const struct prediction *, struct arena *, struct fit *);
+
+bool fit_write_json(const struct fit *, const char *path, struct problem *);
+bool fit_write_curves(const struct fit *, const char *path, struct problem *);
+// One line a row and the run's verdict; colour only on a terminal and without NO_COLOR.
+void fit_print_table(const struct fit *, FILE *);
+
+#endif

@@ -1,0 +1,68 @@
+// The curves of the figure: averages after N iterations, measured over runs and predicted.
+#include "analysis/fit_rows.h"
+
+#include "analysis/special.h"
+
+#include <math.h>
+
+static struct fit_point *new_point(struct fit *fit, const struct fit_row *row, uint64_t n) {
+  struct fit_point *point = &fit->point[fit->n_points++];
+  *point = (struct fit_point){row, n, NAN, NAN, NAN, NAN, NAN};
+  return point;
+}
+
+// Running sums over iterations, carried from one checkpoint to the next.
+struct sums {
+  uint64_t n;
+  double measured, variance, fourth, expected, bias;
+};
+
+static void advance_variance(struct sums *sums, uint64_t n, const struct series *series,
+                             const struct variance_fit *v) {
+  double gaussian = 2 / (series->iteration[0].n - 1);
+  for (uint64_t j = sums->n; j < n; j++) {
+    sums->measured += moments_variance(series->iteration[j]);
+    sums->variance += v->variance[j];
+    sums->fourth += (v->dispersion[j] - gaussian) * v->variance[j] * v->variance[j];
+    sums->expected += v->expected[j];
+  }
+  sums->n = n;
+}
+
+// Where theory knows its constants the curve is theory's own, else the fit with theory's exponent.
+void fit_variance_points(const struct series *series, const struct variance_fit *v,
+                         const struct fit_row *row, struct fit *fit) {
+  struct sums sums = {0};
+  double unit = isfinite(row->coefficient_theory) ? v->coefficient : 1;
+  for (int c = 0; v->converged && c < series->n_checkpoints; c++) {
+    double n = (double)series->checkpoint[c], runs = series->average[c].n;
+    advance_variance(&sums, series->checkpoint[c], series, v);
+    struct fit_point *point = new_point(fit, row, series->checkpoint[c]);
+    double spread = 2 / (runs - 1) + sums.fourth / (sums.variance * sums.variance);
+    point->measured = moments_variance(series->average[c]);
+    point->lower = point->measured / special_gamma_quantile(0.975, spread);
+    point->upper = point->measured / special_gamma_quantile(0.025, spread);
+    point->pooled = sums.measured / (n * n);
+    point->predicted = sums.expected / unit / (n * n);
+  }
+}
+
+void fit_bias_points(const struct series *series, const struct prediction *theory,
+                     const struct variance_fit *v, const struct bias_fit *b,
+                     const struct fit_row *row, struct fit *fit) {
+  struct sums sums = {0};
+  bool known = isfinite(row->coefficient_theory);
+  for (int c = 0; b->measured && c < series->n_checkpoints; c++) {
+    uint64_t j = sums.n, last = series->checkpoint[c];
+    for (; j < last; j++)
+      sums.bias += !known ? b->expected[j] : theory->unbiased ? 0 : theory->bias[j];
+    advance_variance(&sums, last, series, v);
+    double n = (double)last, runs = series->average[c].n;
+    struct fit_point *point = new_point(fit, row, last);
+    double se = sqrt(sums.variance / (n * n) / runs + theory->truth_se * theory->truth_se);
+    point->measured = series->average[c].mean - theory->truth;
+    point->lower = point->measured - 1.959963984540054 * se;
+    point->upper = point->measured + 1.959963984540054 * se;
+    point->predicted = sums.bias / n;
+  }
+}

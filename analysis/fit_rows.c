@@ -1,0 +1,125 @@
+#include "analysis/fit_rows.h"
+
+#include "analysis/special.h"
+
+#include <math.h>
+
+static const double largest_rate_se = 0.1, widest_interval = 0.3;
+
+static void add_test(struct fit_row *row, const char *name, double statistic, double p) {
+  if (!isfinite(statistic)) return;
+  row->test[row->n_tests++] = (struct fit_test){.name = name, .statistic = statistic, .p = p};
+}
+
+static void add_deviate(struct fit_row *row, const char *name, double z) {
+  add_test(row, name, z, special_two_sided(z));
+}
+
+static void add_chi2(struct fit_row *row, struct chi2 chi2) {
+  if (chi2.dof >= 1)
+    add_test(row, "lack-of-fit", chi2.value, special_chi2_upper(chi2.value, chi2.dof));
+}
+
+static struct fit_row *new_row(const struct results *results, const struct series *series,
+                               const struct prediction *theory, enum quantity quantity,
+                               struct fit *fit) {
+  struct fit_row *row = &fit->row[fit->n_rows++];
+  *row = (struct fit_row){
+      .cell = &results->experiment.cell[series->cell],
+      .probe = &results->probe[series->cell][series->probe],
+      .quantity = quantity,
+      .closed_form = theory->closed_form,
+      .rate_theory = NAN,
+      .rate = NAN,
+      .rate_se = NAN,
+      .rate_lo = NAN,
+      .rate_hi = NAN,
+      .coefficient_theory = NAN,
+      .coefficient = NAN,
+      .coefficient_se = NAN,
+      .snr = NAN,
+      .expected_snr = NAN,
+      .upper_bound = NAN,
+  };
+  return row;
+}
+
+static bool has_constants(const struct prediction *theory) {
+  return theory->closed_form && theory->independent;
+}
+
+static void set_rate(struct fit_row *row, double rate, double se, double lo, double hi) {
+  row->resolved = se <= largest_rate_se && hi - lo <= widest_interval;
+  if (!row->resolved) return;
+  row->rate = rate, row->rate_se = se, row->rate_lo = lo, row->rate_hi = hi;
+}
+
+// In closed form the fits are of theory's own unit, so that a coefficient is a ratio to theory's.
+static void set_coefficient(struct fit_row *row, double unit, double value, double se) {
+  double scale = row->closed_form ? unit : 1;
+  row->coefficient = value * scale;
+  row->coefficient_se = se * fabs(scale);
+}
+
+static void variance_row(const struct variance_fit *v, const struct prediction *theory,
+                         struct fit_row *row) {
+  row->rate_theory = theory->family.theory;
+  if (has_constants(theory)) row->coefficient_theory = theory->variance_coefficient;
+  if (!v->converged) return;
+  double half = 1.959963984540054 * v->rate_se;
+  set_rate(row, v->rate, v->rate_se, v->rate - half, v->rate + half);
+  set_coefficient(row, theory->variance_coefficient, v->coefficient, v->coefficient_se);
+  if (row->resolved) add_deviate(row, "rate", (v->rate - row->rate_theory) / v->rate_se);
+  if (has_constants(theory)) {
+    double z = special_gamma_deviate(v->coefficient, v->null_se * v->null_se);
+    add_deviate(row, "coefficient", z);
+  }
+}
+
+static void bias_row(const struct bias_fit *b, const struct prediction *theory,
+                     struct fit_row *row) {
+  if (!theory->unbiased) row->rate_theory = bias_theory_rate(theory);
+  double known = theory->unbiased ? 0 : theory->bias_coefficient;
+  if (theory->unbiased || has_constants(theory)) row->coefficient_theory = known;
+  if (!b->measured) return;
+  set_coefficient(row, theory->unbiased ? 1 : known, b->coefficient, b->coefficient_se);
+  row->snr = b->snr;
+  row->upper_bound = fabs(row->coefficient) + 1.959963984540054 * row->coefficient_se;
+  row->expected_snr = fabs(row->coefficient_theory) / row->coefficient_se;
+  row->detected = b->snr >= fit_detection_snr && !theory->unbiased;
+  // A rate that theory says cannot be known is not known because chance put the best fit where the
+  // profile is narrow.
+  if (row->detected && b->rate_found && b->rate_se_theory <= largest_rate_se)
+    set_rate(row, b->rate, b->rate_se, b->rate_lo, b->rate_hi);
+  if (row->resolved) add_deviate(row, "rate", b->rate_deviate);
+  if (theory->unbiased)
+    add_deviate(row, "zero-bias", b->coefficient / b->coefficient_se);
+  else if (has_constants(theory))
+    add_deviate(row, "coefficient", (b->coefficient - 1) / b->coefficient_se);
+}
+
+void fit_series(const struct results *results, const struct series *series,
+                const struct prediction *theory, struct arena scratch, struct fit *fit) {
+  const struct cell *cell = &results->experiment.cell[series->cell];
+  struct variance_fit v = fit_variance(theory, series->iteration, &scratch);
+  double ratio, dependence = fit_independence(&v, series, &ratio);
+  if (cell->quantities & QUANTITY_VARIANCE) {
+    struct fit_row *row = new_row(results, series, theory, QUANTITY_VARIANCE, fit);
+    variance_row(&v, theory, row);
+    if (theory->independent) add_deviate(row, "independence", dependence);
+    if (theory->independent && v.converged) add_chi2(row, v.lack_of_fit);
+    fit_variance_points(series, &v, row, fit);
+  }
+  if (cell->quantities & QUANTITY_BIAS) {
+    struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
+    struct bias_fit b = {0};
+    const double *weights = v.rate_se <= largest_rate_se ? v.variance : v.expected;
+    if (v.converged) b = fit_bias(theory, series->iteration, weights, &scratch);
+    bias_row(&b, theory, row);
+    if (theory->independent && b.measured) {
+      add_deviate(row, "independence", dependence); // its standard errors rest on it
+      add_chi2(row, b.lack_of_fit);
+    }
+    fit_bias_points(series, theory, &v, &b, row, fit);
+  }
+}

@@ -1,0 +1,21 @@
+// From fits to rows: the tests of one series, and its points for the figure.
+#ifndef ANALYSIS_FIT_ROWS_H
+#define ANALYSIS_FIT_ROWS_H
+
+#include "analysis/fit.h"
+
+// A bias is detected from here (theory 4.6); its rate is resolved if it is known to `0.1`, within
+// an interval of 0.3.
+static const double fit_detection_snr = 3;
+
+// Appends the series' rows and points to the fit, which has room for them.
+void fit_series(const struct results *, const struct series *, const struct prediction *,
+                struct arena scratch, struct fit *);
+
+// Points of one row (fit_points.c).
+void fit_variance_points(const struct series *, const struct variance_fit *, const struct fit_row *,
+                         struct fit *);
+void fit_bias_points(const struct series *, const struct prediction *, const struct variance_fit *,
+                     const struct bias_fit *, const struct fit_row *, struct fit *);
+
+#endif

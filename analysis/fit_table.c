@@ -1,0 +1,140 @@
+// The table on the terminal. Columns that are the same in every row are left out.
+#define _POSIX_C_SOURCE 200809L // fileno, isatty
+
+#include "analysis/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CELL_SIZE = 96, MAX_COLUMNS = 12 };
+
+struct column {
+  const char *head;
+  bool left;         // aligned
+  bool only_varying; // left out where every row says the same
+  void (*print)(const struct fit_row *, char text[CELL_SIZE]);
+};
+
+static void copy(char *text, const char *from) { snprintf(text, CELL_SIZE, "%s", from); }
+
+static void print_number(char *text, const char *format, double x) {
+  if (isfinite(x))
+    snprintf(text, CELL_SIZE, format, x);
+  else
+    copy(text, "-");
+}
+
+static void print_scene(const struct fit_row *row, char *text) { copy(text, row->cell->scene); }
+static void print_integrator(const struct fit_row *row, char *text) {
+  copy(text, row->cell->integrator->name);
+}
+static void print_kernel(const struct fit_row *row, char *text) {
+  copy(text, row->cell->kernel->name);
+}
+static void print_law(const struct fit_row *row, char *text) { copy(text, row->cell->law->name); }
+static void print_probe(const struct fit_row *row, char *text) {
+  snprintf(text, CELL_SIZE, "%d,%d", row->probe->x, row->probe->y);
+}
+static void print_alpha(const struct fit_row *row, char *text) {
+  print_number(text, "%.4g", row->cell->alpha);
+}
+static void print_quantity(const struct fit_row *row, char *text) {
+  copy(text, row->quantity == QUANTITY_VARIANCE ? "variance" : "bias");
+}
+static void print_theory(const struct fit_row *row, char *text) {
+  print_number(text, "%.4f", row->rate_theory);
+}
+static void print_rate(const struct fit_row *row, char *text) {
+  copy(text, "-");
+  if (isfinite(row->rate)) snprintf(text, CELL_SIZE, "%.4f +- %.4f", row->rate, row->rate_se);
+}
+static void print_interval(const struct fit_row *row, char *text) {
+  copy(text, "");
+  if (isfinite(row->rate)) snprintf(text, CELL_SIZE, "[%.4f, %.4f]", row->rate_lo, row->rate_hi);
+}
+static void print_ratio(const struct fit_row *row, char *text) {
+  copy(text, "-");
+  double theory = row->coefficient_theory;
+  if (isfinite(row->coefficient / theory))
+    snprintf(text, CELL_SIZE, "%.3f +- %.3f", row->coefficient / theory,
+             row->coefficient_se / fabs(theory));
+}
+static void print_verdict(const struct fit_row *row, char *text) {
+  copy(text, verdict_names[row->verdict]);
+  const char *separator = ":";
+  for (int t = 0; t < row->n_tests; t++) {
+    size_t length = strlen(text);
+    if (!row->test[t].rejects) continue;
+    snprintf(text + length, CELL_SIZE - length, "%s %s", separator, row->test[t].name);
+    separator = ",";
+  }
+}
+
+static const struct column columns[] = {
+    {"scene", true, false, print_scene},         {"integrator", true, true, print_integrator},
+    {"kernel", true, true, print_kernel},        {"law", true, true, print_law},
+    {"probe", false, true, print_probe},         {"alpha", false, false, print_alpha},
+    {"quantity", true, false, print_quantity},   {"theory", false, false, print_theory},
+    {"rate", false, false, print_rate},          {"95 %", false, false, print_interval},
+    {"coeff/theory", false, false, print_ratio}, {"verdict", true, false, print_verdict},
+};
+enum { N_COLUMNS = sizeof columns / sizeof *columns };
+
+// Width of a column, 0 if it is left out.
+static int column_width(const struct fit *fit, const struct column *column) {
+  size_t width = strlen(column->head);
+  char text[CELL_SIZE], first[CELL_SIZE];
+  bool varies = false;
+  for (int r = 0; r < fit->n_rows; r++) {
+    column->print(&fit->row[r], text);
+    if (r == 0) copy(first, text);
+    varies |= strcmp(first, text) != 0;
+    width = strlen(text) > width ? strlen(text) : width;
+  }
+  return column->only_varying && !varies ? 0 : (int)width;
+}
+
+static const char *colour_of(enum verdict verdict) {
+  static const char *const colours[] = {"\033[32m", "\033[31m", "\033[33m", "\033[33m"};
+  return colours[verdict];
+}
+
+static bool in_colour(FILE *stream) {
+  const char *forbidden = getenv("NO_COLOR");
+  return !(forbidden && *forbidden) && isatty(fileno(stream));
+}
+
+static void print_cell(FILE *stream, int c, int width, const char *text) {
+  if (c == N_COLUMNS - 1)
+    fprintf(stream, "%s", text);
+  else
+    fprintf(stream, columns[c].left ? "%-*s  " : "%*s  ", width, text);
+}
+
+static void print_row(const struct fit_row *row, const int *width, bool colour, FILE *stream) {
+  char text[CELL_SIZE];
+  for (int c = 0; c < N_COLUMNS; c++) {
+    if (!width[c]) continue;
+    columns[c].print(row, text);
+    bool coloured = colour && c == N_COLUMNS - 1;
+    if (coloured) fputs(colour_of(row->verdict), stream);
+    print_cell(stream, c, width[c], text);
+    if (coloured) fputs("\033[0m", stream);
+  }
+  fputc('\n', stream);
+}
+
+void fit_print_table(const struct fit *fit, FILE *stream) {
+  bool colour = in_colour(stream);
+  int width[N_COLUMNS];
+  for (int c = 0; c < N_COLUMNS; c++) width[c] = column_width(fit, &columns[c]);
+  for (int c = 0; c < N_COLUMNS; c++)
+    if (width[c]) print_cell(stream, c, width[c], columns[c].head);
+  fputc('\n', stream);
+  for (int r = 0; r < fit->n_rows; r++) print_row(&fit->row[r], width, colour, stream);
+  fprintf(stream, "%s: %s%s%s (family-wise level %g, each test at %.2g)\n", fit->experiment->name,
+          colour ? colour_of(fit->verdict) : "", verdict_names[fit->verdict],
+          colour ? "\033[0m" : "", fit->level, fit->test_level);
+}

@@ -1,0 +1,27 @@
+// The variance of one cell at one probe: rate and coefficient from the variances over runs of every
+// iteration (theory 4.4a), and whether the iterations are independent (theory 4.1).
+#ifndef ANALYSIS_FIT_VARIANCE_H
+#define ANALYSIS_FIT_VARIANCE_H
+
+#include "analysis/bins.h"
+#include "analysis/prediction.h"
+
+struct variance_fit {
+  bool converged; // else nothing below is meant
+  double rate, rate_se;
+  double coefficient, coefficient_se; // of prediction.divergent, with the rate held at theory
+  double null_se; // relative standard error of the coefficient if theory is right
+  struct chi2 lack_of_fit;
+  double *variance;   // [n] fitted, rate free
+  double *expected;   // [n] fitted, rate at theory; theory itself in closed form
+  double *dispersion; // [n] relative variance of the measured variance of one iteration
+};
+
+struct variance_fit fit_variance(const struct prediction *, const struct moments *iteration,
+                                 struct arena *);
+
+// Deviate of (variance of the average) / (the mean of the iterations' variances / N), which are
+// equal iff iterations are uncorrelated. NAN where there is nothing to compare.
+double fit_independence(const struct variance_fit *, const struct series *, double *ratio);
+
+#endif

@@ -1,0 +1,103 @@
+#include "analysis/prediction.h"
+
+#include <math.h>
+
+// Excess kurtosis of a mean of `photons` values with these raw moments.
+static double excess_kurtosis(const double m[PROFILE_MOMENTS], double photons) {
+  double variance = m[1] - m[0] * m[0];
+  double fourth = m[3] + m[0] * (-4 * m[2] + m[0] * (6 * m[1] - 3 * m[0] * m[0]));
+  return (fourth / (variance * variance) - 3) / photons;
+}
+
+// A bias below the rounding of the quadrature (PROFILE_NODES^2 products) is none; to see it would
+// take 1e24 photons.
+static bool is_zero_bias(const double *bias, uint64_t n, double exact) {
+  double largest = 0;
+  for (uint64_t j = 0; j < n; j++) largest = fmax(largest, fabs(bias[j]));
+  return largest <= 1e-12 * fabs(exact);
+}
+
+struct prediction prediction_from_profile(const struct profile *profile, double radius,
+                                          double photons, double emitted,
+                                          const struct family *family, struct arena *arena) {
+  uint64_t n = family->n;
+  double *divergent = arena_new(arena, double, (ptrdiff_t)n);
+  double *rest = arena_new(arena, double, (ptrdiff_t)n);
+  double *bias = arena_new(arena, double, (ptrdiff_t)n);
+  double *kurtosis = arena_new(arena, double, (ptrdiff_t)n);
+  for (uint64_t j = 0; j < n; j++) {
+    double r = radius * sqrt(family->rho[j]), moment[PROFILE_MOMENTS];
+    for (int k = 0; k < PROFILE_MOMENTS; k++) moment[k] = profile_moment(profile, k + 1, r);
+    divergent[j] = moment[1] / photons;
+    rest[j] = -moment[0] * moment[0] / photons;
+    bias[j] = profile_bias(profile, r);
+    kurtosis[j] = excess_kurtosis(moment, photons);
+  }
+  bool unbiased = is_zero_bias(bias, n, profile->exact);
+  for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = family->rho[j];
+  return (struct prediction){
+      .d = 2,
+      .n = n,
+      .family = *family,
+      .closed_form = true,
+      .independent = true,
+      .unbiased = unbiased,
+      .truth = profile->exact + emitted,
+      .variance_coefficient = profile_roughness(profile) / (photons * radius * radius),
+      .bias_coefficient = unbiased ? 0 : bias[0],
+      .divergent = divergent,
+      .rest = rest,
+      .bias = bias,
+      .kurtosis = kurtosis,
+  };
+}
+
+// Powers of rho: variance d^0, rho^(2/d - 1) and 1/rho; bias rho^(2/d) and rho^(4/d).
+struct prediction prediction_from_reference(double reference, double reference_se, int d,
+                                            const struct family *family, struct arena *arena) {
+  uint64_t n = family->n;
+  double *divergent = arena_new(arena, double, (ptrdiff_t)n);
+  double *rest = arena_new(arena, double, (ptrdiff_t)n);
+  double *bias = arena_new(arena, double, (ptrdiff_t)n);
+  double *bias2 = arena_new(arena, double, (ptrdiff_t)n);
+  bool constant = true;
+  for (uint64_t j = 0; j < n; j++) {
+    double rho = family->rho[j];
+    divergent[j] = 1 / rho;
+    rest[j] = pow(rho, 2.0 / d - 1);
+    bias[j] = pow(rho, 2.0 / d);
+    bias2[j] = pow(rho, 4.0 / d);
+    constant &= rho == 1;
+  }
+  return (struct prediction){
+      .d = d,
+      .n = n,
+      .family = *family,
+      .independent = true,
+      .truth = reference,
+      .truth_se = reference_se,
+      .variance_coefficient = NAN,
+      .bias_coefficient = NAN,
+      .divergent = divergent,
+      .rest = constant ? NULL : rest, // with a constant radius the terms are one
+      .bias = bias,
+      .bias2 = constant ? NULL : bias2,
+  };
+}
+
+struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
+                                 const struct probe *probe, const struct family *family,
+                                 struct arena *arena) {
+  struct ring_mean ring;
+  struct prediction p;
+  if (ring_mean_find(scene, cell, probe, cell->radius, *arena, &ring)) {
+    struct profile profile = profile_new(&ring, cell->kernel, cell->radius);
+    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted,
+                                family, arena);
+  } else {
+    p = prediction_from_reference(probe->reference, probe->reference_se, 2, family, arena);
+    p.unbiased = !cell->integrator->photons;
+  }
+  p.independent = cell->integrator->independent;
+  return p;
+}

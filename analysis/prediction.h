@@ -1,0 +1,46 @@
+// What theory says of one cell at one probe, iteration by iteration (theory 1.3, 1.4, 3.2).
+#ifndef ANALYSIS_PREDICTION_H
+#define ANALYSIS_PREDICTION_H
+
+#include "analysis/family.h"
+#include "analysis/profile.h"
+#include "base/arena.h"
+#include "experiment/experiment.h"
+#include "log/results.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// Where there is a closed form, at theory's radii and per iteration,
+//   variance = divergent + rest, bias = bias,
+// exactly. Elsewhere only their shape is known: variance = a divergent + c rest and
+// bias = b1 bias + b2 bias2, with a, c, b1, b2 to be fitted. Where theory's bias is zero, `bias` is
+// the shape that is looked for.
+struct prediction {
+  int d;      // dimension of the kernel
+  uint64_t n; // iterations
+  struct family family;
+  bool closed_form;
+  bool independent; // of each other; else radii follow the photons found, the law holds in
+                    // expectation, and exponents are predicted but constants are not (theory 2.4)
+  bool unbiased;    // theory's bias is zero for every radius
+  double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against
+  double variance_coefficient; // A: the leading term of the first iteration's variance; or NAN
+  double bias_coefficient;     // b_1: the first iteration's bias; or NAN
+  const double *divergent, *rest, *bias, *bias2; // [n]; rest, bias2 NULL where there is one term
+  const double *kurtosis;                        // [n], excess, of one value; NULL if unknown
+};
+
+// `scene` is only asked for a closed form. The family must outlive the prediction.
+struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
+                                 const struct probe *probe, const struct family *family,
+                                 struct arena *arena);
+
+// The same from a profile of the irradiance that is already known; tests use it.
+struct prediction prediction_from_profile(const struct profile *, double radius, double photons,
+                                          double emitted, const struct family *, struct arena *);
+// ... and where nothing but the exponents is known.
+struct prediction prediction_from_reference(double reference, double reference_se, int d,
+                                            const struct family *, struct arena *);
+
+#endif

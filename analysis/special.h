@@ -1,0 +1,20 @@
+// Distributions and quadrature nodes: all of GSL that the analysis uses, in one file.
+#ifndef ANALYSIS_SPECIAL_H
+#define ANALYSIS_SPECIAL_H
+
+double special_normal_upper(double z);        // P(Z > z)
+double special_normal_quantile(double upper); // z with P(Z > z) = upper
+double special_two_sided(double z);           // P(|Z| > |z|)
+double special_chi2_upper(double x, double dof);
+
+// A positive estimate of 1 with this relative variance, taken as gamma distributed (exact for
+// variances of normal data): the normal deviate with the same tail, and the quantile.
+double special_gamma_deviate(double ratio, double relative_variance);
+double special_gamma_quantile(double lower, double relative_variance);
+
+double special_zeta(int k); // k >= 2
+
+// n-point Gauss-Legendre on [0, 1].
+void special_gauss_legendre(int n, double *x, double *weight);
+
+#endif
