@@ -35,9 +35,9 @@ static const struct option options[] = {
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
-static const struct command *const commands[] = {
-    &command_run,  &command_fit,  &command_plot,    &command_render,
-    &command_info, &command_list, &command_validate};
+static const struct command *const commands[] = {&command_run,     &command_fit,  &command_plot,
+                                                 &command_render,  &command_info, &command_list,
+                                                 &command_validate};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----
@@ -54,9 +54,10 @@ static void print_help(void) {
   printf("photonlab measures how progressive photon mapping converges.\n\nusage: photonlab COMMAND "
          "...\n\n");
   for (int k = 0; k < N_COMMANDS; k++)
-    printf("  %-9s %-12s %s\n", commands[k]->name, commands[k]->argument ? commands[k]->argument : "",
-           commands[k]->about);
-  printf("\nphotonlab COMMAND --help lists a command's options; photonlab --version the version.\n");
+    printf("  %-9s %-12s %s\n", commands[k]->name,
+           commands[k]->argument ? commands[k]->argument : "", commands[k]->about);
+  printf(
+      "\nphotonlab COMMAND --help lists a command's options; photonlab --version the version.\n");
 }
 
 static void print_command_help(const struct command *command) {
@@ -108,8 +109,7 @@ static bool take(const struct option *option, const char *text, struct cli *cli,
   if (strcmp(option->name, "output") == 0) cli->output = text;
   if (strcmp(option->name, "quality") == 0) cli->quality = text;
   if (strcmp(option->name, "quiet") == 0) cli->options.quiet = true;
-  if (strcmp(option->name, "no-skip") == 0)
-    return skip_read(text, &cli->options.skip_off, problem);
+  if (strcmp(option->name, "no-skip") == 0) return skip_read(text, &cli->options.skip_off, problem);
   if (strcmp(option->name, "threads") == 0) return read_threads(text, cli, problem);
   return true;
 }
@@ -166,9 +166,8 @@ const char *cli_setting_of(const struct cli *cli, const char *key) {
 bool cli_apply(const struct cli *cli, struct cell *cell, struct problem *problem) {
   for (int s = 0; s < cli->n_settings; s++) {
     const struct cli_setting *setting = &cli->setting[s];
-    struct node node = {.kind = NODE_SCALAR,
-                        .place = {.file = "command line"},
-                        .text = setting->text};
+    struct node node = {
+        .kind = NODE_SCALAR, .place = {.file = "command line"}, .text = setting->text};
     struct reading reading = {cli->arena, problem, setting->option};
     for (int k = 0; k < n_experiment_keys; k++)
       if (strcmp(experiment_keys[k].name, setting->key) == 0 &&

@@ -10,10 +10,10 @@ enum { EXIT_USAGE = 2, CLI_MAX_SETTINGS = 32 };
 
 // What was said on the command line.
 struct cli {
-  const char *argument;            // the file or directory the command is about, or NULL
-  const char *output, *quality;    // NULL: not said
+  const char *argument;         // the file or directory the command is about, or NULL
+  const char *output, *quality; // NULL: not said
   struct run_options options;
-  struct cli_setting {             // keys of an experiment, in the order given
+  struct cli_setting { // keys of an experiment, in the order given
     const char *option, *key, *text;
   } setting[CLI_MAX_SETTINGS];
   int n_settings;
@@ -24,7 +24,7 @@ struct command {
   const char *name;
   const char *argument; // "SCENE", shown in the usage; "[WHAT]": may be left out; NULL: none
   const char *about;
-  const char *options;  // names of the options it takes, separated by spaces
+  const char *options;                        // names of the options it takes, separated by spaces
   int (*run)(struct cli *, struct problem *); // the exit status; with a problem set: 1
 };
 

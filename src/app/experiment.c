@@ -23,9 +23,13 @@ static int run(struct cli *cli, struct problem *problem) {
   const char *directory =
       cli->output ? cli->output : arena_format(cli->arena, "results/%s", experiment.name);
   switch (run_experiment(&experiment, directory, cli->options, cli->arena, problem)) {
-  case RUN_DONE: printf("%s\n", directory); return 0;
-  case RUN_INTERRUPTED: return 128 + interrupt_signal();
-  default: return 1;
+  case RUN_DONE:
+    printf("%s\n", directory);
+    return 0;
+  case RUN_INTERRUPTED:
+    return 128 + interrupt_signal();
+  default:
+    return 1;
   }
 }
 
@@ -72,18 +76,19 @@ static int plot(struct cli *cli, struct problem *problem) {
     return problem_set(problem, "cannot run gnuplot: is it installed?"), 1;
   if (status != 0)
     return problem_set(problem, "%s: gnuplot failed; is %s/curves.csv there (photonlab fit)?",
-                       script, cli->argument), 1;
+                       script, cli->argument),
+           1;
   printf("%s\n", figures);
   return 0;
 }
 
-const struct command command_run = {
-    "run", "EXPERIMENT", "runs an experiment file, into results/NAME or -o DIR",
-    "output threads quiet no-skip quality seed", run};
+const struct command command_run = {"run", "EXPERIMENT",
+                                    "runs an experiment file, into results/NAME or -o DIR",
+                                    "output threads quiet no-skip quality seed", run};
 
-const struct command command_fit = {
-    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv", "quiet threads",
-    fit};
+const struct command command_fit = {"fit", "DIR",
+                                    "fits rates to the results in DIR: table, fit.json, curves.csv",
+                                    "quiet threads", fit};
 
 const struct command command_plot = {
     "plot", "DIR", "draws the experiment's figure from the results in DIR", "quiet", plot};

@@ -1,4 +1,5 @@
-// photonlab list, info, validate: what is registered, what a scene holds, whether the tables are right.
+// photonlab list, info, validate: what is registered, what a scene holds, whether the tables are
+// right.
 #include "app/cli.h"
 #include "app/validate.h"
 #include "pbrt/suggest.h"

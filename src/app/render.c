@@ -1,8 +1,8 @@
 // photonlab render: a picture of a scene by one integrator.
+#include "run/render.h"
 #include "app/cli.h"
 #include "density/grid.h"
 #include "run/interrupt.h"
-#include "run/render.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -76,14 +76,14 @@ static struct measurement measure_film(const struct cell *cell, const struct sce
 }
 
 static char *manifest_of(const struct cell *cell, const struct scene *scene, struct arena *arena) {
-  return arena_format(
-      arena,
-      "{\"scene_hash\": \"%016" PRIx64 "\", \"integrator\": \"%s\", \"kernel\": \"%s\", "
-      "\"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, \"photons\": %" PRIu64
-      ", \"iterations\": %" PRIu64 ", \"seed\": \"%016" PRIx64 "\", \"depth\": %d}",
-      scene->hash, cell->integrator->name, cell->kernel->name, cell->law->name, cell->alpha,
-      isnan(cell->radius) ? 0 : cell->radius, cell->photons, cell->iterations, cell->seed,
-      cell->depth);
+  return arena_format(arena,
+                      "{\"scene_hash\": \"%016" PRIx64
+                      "\", \"integrator\": \"%s\", \"kernel\": \"%s\", "
+                      "\"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, \"photons\": %" PRIu64
+                      ", \"iterations\": %" PRIu64 ", \"seed\": \"%016" PRIx64 "\", \"depth\": %d}",
+                      scene->hash, cell->integrator->name, cell->kernel->name, cell->law->name,
+                      cell->alpha, isnan(cell->radius) ? 0 : cell->radius, cell->photons,
+                      cell->iterations, cell->seed, cell->depth);
 }
 
 static int render(struct cli *cli, struct problem *problem) {

@@ -1,7 +1,7 @@
 // The photon grid: who lies within r of a point. Cubic cells of edge r, hashed into buckets, filled
-// by a stable counting sort, so that a query finds photons in one order: cells by (z, y, x), within a
-// cell as stored. A photon of another cell that shares the bucket is told apart by its cell, so no
-// photon is ever found twice.
+// by a stable counting sort, so that a query finds photons in one order: cells by (z, y, x), within
+// a cell as stored. A photon of another cell that shares the bucket is told apart by its cell, so
+// no photon is ever found twice.
 #ifndef DENSITY_GRID_H
 #define DENSITY_GRID_H
 
@@ -16,8 +16,8 @@ struct grid_cell {
 
 struct grid {
   double r, inverse_edge;
-  uint32_t mask;          // buckets - 1, a power of two
-  uint32_t *first;        // [mask + 2] of each bucket's photons
+  uint32_t mask;   // buckets - 1, a power of two
+  uint32_t *first; // [mask + 2] of each bucket's photons
   int64_t count, capacity;
   uint32_t bucket_capacity;
   struct vec *position;   // sorted
@@ -34,8 +34,8 @@ bool grid_radius_is_resolved(struct box bounds, double r, struct problem *);
 // Sorts the photons; grows in the arena.
 void grid_build(struct grid *, const struct photons *, double r, struct arena *);
 
-// Photons within r of p: their numbers in struct photons and squared distances, in the grid's order.
-// At most `count` of the photons there are.
+// Photons within r of p: their numbers in struct photons and squared distances, in the grid's
+// order. At most `count` of the photons there are.
 int grid_find(const struct grid *, struct vec p, uint32_t *photon, double *distance2);
 
 // The cells that the ball of radius r around any of n points meets, as a filter for photons_trace.

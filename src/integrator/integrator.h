@@ -29,22 +29,22 @@ struct measurement {
   struct features features;
   const struct pixel *pixel; // [n_points] what is measured: a few probes or a whole image
   int n_points;
-  int n_replicas;           // path: this many points in a row are samples of one pixel, each with
-                            // random numbers of its own; at least 1
-  bool footprint;           // a new uniform position in the pixel each iteration, else its centre
-  bool nee;                 // direct light by next-event estimation instead of photons
-  int depth;                // pbrt's maxdepth
-  uint64_t n_emitted;       // photon paths per iteration
+  int n_replicas;     // path: this many points in a row are samples of one pixel, each with
+                      // random numbers of its own; at least 1
+  bool footprint;     // a new uniform position in the pixel each iteration, else its centre
+  bool nee;           // direct light by next-event estimation instead of photons
+  int depth;          // pbrt's maxdepth
+  uint64_t n_emitted; // photon paths per iteration
   uint64_t seed;
   const struct estimator *estimator;
   int n_estimators;
-  unsigned skip_off;        // bits of enum skip: what is not to be skipped
+  unsigned skip_off; // bits of enum skip: what is not to be skipped
 };
 
 struct integrator_type {
   const char *name, *about, *source;
-  bool photons;      // uses kernel, law, radius and photons
-  bool independent;  // iterations are independent of each other: any order, any split
+  bool photons;     // uses kernel, law, radius and photons
+  bool independent; // iterations are independent of each other: any order, any split
   // State for one thread. The measurement must outlive it.
   void *(*new)(const struct measurement *, struct arena *);
   void (*begin)(void *state, uint64_t run); // run k = 1, 2, ...

@@ -41,8 +41,10 @@ static void add_emission(struct path *state, int j, const struct surface *surfac
 }
 
 static struct connection connection_of(const struct walk *walk, int j, const struct surface *at) {
-  struct connection connection = {.surface = *at, .wo = vec_scale(walk->ray[j].d, -1),
-                                  .owner = walk->owner[j], .path = walk->path[j]};
+  struct connection connection = {.surface = *at,
+                                  .wo = vec_scale(walk->ray[j].d, -1),
+                                  .owner = walk->owner[j],
+                                  .path = walk->path[j]};
   for (int c = 0; c < walk->n_channels; c++) connection.weight[c] = walk->throughput[c][j];
   return connection;
 }

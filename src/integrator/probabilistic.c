@@ -40,7 +40,8 @@ static void *probabilistic_new(const struct measurement *measure, struct arena *
   state->points_are_fixed = !measure->footprint && !(measure->skip_off & SKIP_STATIC_EYE);
   if (measure->nee) {
     state->connection = arena_new(arena, struct connection, WALK_BATCH);
-    state->direct = arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
+    state->direct =
+        arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
   }
   return state;
 }
@@ -116,9 +117,11 @@ static void add_direct(struct probabilistic *state, double *frame) {
     for (int j = first; j < measure->n_points && j < first + WALK_BATCH; j++) {
       const struct eye_point *point = &state->point[j];
       if (!point->hit) continue;
-      connection[n] = (struct connection){.surface = point->surface, .wo = point->wo, .owner = j,
-                                          .path = eye_path(&measure->scene->camera,
-                                                           measure->pixel[j])};
+      connection[n] =
+          (struct connection){.surface = point->surface,
+                              .wo = point->wo,
+                              .owner = j,
+                              .path = eye_path(&measure->scene->camera, measure->pixel[j])};
       memcpy(connection[n++].weight, point->weight, sizeof point->weight);
     }
     connect_lights(state->walk, connection, n, 0, false, direct);

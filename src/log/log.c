@@ -22,8 +22,7 @@ const struct log_column log_columns[] = {
 const int n_log_columns = sizeof log_columns / sizeof *log_columns;
 
 void log_write_header(FILE *out) {
-  for (int k = 0; k < n_log_columns; k++)
-    fprintf(out, "%s%s", k ? "," : "", log_columns[k].name);
+  for (int k = 0; k < n_log_columns; k++) fprintf(out, "%s%s", k ? "," : "", log_columns[k].name);
   fputc('\n', out);
 }
 

@@ -1,6 +1,6 @@
-// A results directory read back: what was run and what was measured. Written by src/run, read by the
-// analysis. Formats: log.csv (columns in log_columns), probes.csv, manifest.json, a copy of
-// the experiment.
+// A results directory read back: what was run and what was measured. Written by src/run, read by
+// the analysis. Formats: log.csv (columns in log_columns), probes.csv, manifest.json, a copy of the
+// experiment.
 #ifndef LOG_RESULTS_H
 #define LOG_RESULTS_H
 
@@ -13,31 +13,31 @@
 // A probe of one part's scene: where its unjittered ray meets the scene, and what is true there.
 struct probe {
   int x, y;
-  bool hit;             // false: the ray leaves the scene
-  struct vec p, n;      // world; n on the side of the eye
-  double scale;         // radiance per irradiance there, f_r (1/sr) of a diffuse surface, luminance
+  bool hit;        // false: the ray leaves the scene
+  struct vec p, n; // world; n on the side of the eye
+  double scale;    // radiance per irradiance there, f_r (1/sr) of a diffuse surface, luminance
   double scale_rgb[3];
-  double emitted;       // radiance emitted towards the eye, luminance
+  double emitted;                 // radiance emitted towards the eye, luminance
   double reference, reference_se; // radiance, luminance; NAN where there is none
 };
 
 // Statistics over runs of one cell at one probe. Values are luminance of radiance [W sr^-1 m^-2].
 struct series {
-  int cell, probe;             // numbers
+  int cell, probe; // numbers
   uint64_t n_iterations;
-  struct moments *iteration;   // [n_iterations]: iteration i at i - 1
+  struct moments *iteration; // [n_iterations]: iteration i at i - 1
   int n_checkpoints;
-  uint64_t *checkpoint;        // N
-  struct moments *average;     // of the running average after N iterations: n, mean, m2 (m3, m4 zero)
+  uint64_t *checkpoint;    // N
+  struct moments *average; // of the running average after N iterations: n, mean, m2 (m3, m4 zero)
 };
 
 struct results {
   const char *directory;
   struct experiment experiment;
-  uint64_t *scene_hash;        // by cell
-  struct probe **probe;        // by cell: [n_probes of the cell]
-  int *n_probes;               // by cell
-  struct series *series;       // by cell, then probe
+  uint64_t *scene_hash;  // by cell
+  struct probe **probe;  // by cell: [n_probes of the cell]
+  int *n_probes;         // by cell
+  struct series *series; // by cell, then probe
   int n_series;
 };
 

@@ -47,8 +47,7 @@ static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, cons
 static void run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
                      struct averages *sum, double *value) {
   const struct integrator_type *integrator = plan->cell->integrator;
-  memset(sum->probe, 0,
-         (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
+  memset(sum->probe, 0, (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
   memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
   integrator->begin(state, run);
   int next = 0;
@@ -63,8 +62,7 @@ static void run_once(const struct group_plan *plan, void *state, uint64_t run, d
 void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
                    struct arena scratch) {
   const struct measurement *measure = &plan->measure;
-  long frame_size =
-      (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
+  long frame_size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
   double *frame = arena_new(&scratch, double, frame_size);
   double *value = arena_new(&scratch, double, plan->width);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
@@ -72,7 +70,7 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                          arena_new(&scratch, double, plan->images ? frame_size : 0),
                          plan->images ? frame_size : 0};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
-  void *state = plan->cell->integrator->new(measure, &scratch);
+  void *state = plan->cell->integrator->new (measure, &scratch);
   uint64_t first = block * RUNS_PER_BLOCK + 1, last = first + RUNS_PER_BLOCK - 1;
   last = last < plan->cell->runs ? last : plan->cell->runs;
   for (uint64_t run = first; run <= last; run++) {

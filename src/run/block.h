@@ -1,5 +1,5 @@
-// The unit of work: sixteen runs of one group, reduced to moments, kept in a file of its own so that
-// an interrupted experiment goes on where it stopped.
+// The unit of work: sixteen runs of one group, reduced to moments, kept in a file of its own so
+// that an interrupted experiment goes on where it stopped.
 #ifndef RUN_BLOCK_H
 #define RUN_BLOCK_H
 
@@ -9,8 +9,8 @@
 void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
                    struct arena scratch);
 
-// The file of a block in a results directory. A file of another fingerprint, or a damaged one, is as
-// good as none. Writing dies when the disk fails.
+// The file of a block in a results directory. A file of another fingerprint, or a damaged one, is
+// as good as none. Writing dies when the disk fails.
 bool block_exists(const struct group_plan *, uint64_t block, const char *directory,
                   struct arena scratch);
 void block_write(const struct group_plan *, uint64_t block, const char *directory,

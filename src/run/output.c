@@ -57,12 +57,9 @@ static void write_group_log(FILE *out, const struct plan *plan, const struct gro
   for (int e = 0; e < group->measure.n_estimators; e++)
     for (int p = 0; p < group->n_probes; p++) {
       struct moments *at = moments + plan_series(group, e, p);
-      struct series series = {group->group->cell[e],
-                              p,
-                              group->cell->iterations,
-                              at,
-                              group->n_checkpoints,
-                              group->checkpoint,
+      struct series series = {group->group->cell[e],       p,
+                              group->cell->iterations,     at,
+                              group->n_checkpoints,        group->checkpoint,
                               at + group->cell->iterations};
       log_write_series(out, &plan->experiment->cell[series.cell], &series);
     }

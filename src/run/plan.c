@@ -93,8 +93,8 @@ static void plan_layout(struct group_plan *plan, struct arena *arena) {
   plan->checkpoint = plan_checkpoints(plan->cell->iterations, &plan->n_checkpoints, arena);
   plan->series_width = (long)plan->cell->iterations + plan->n_checkpoints;
   long image = (long)measure->n_points * measure->features.n_channels;
-  plan->width = measure->n_estimators *
-                (plan->n_probes * plan->series_width + (plan->images ? plan->cell->n_images : 0) * image);
+  plan->width = measure->n_estimators * (plan->n_probes * plan->series_width +
+                                         (plan->images ? plan->cell->n_images : 0) * image);
   plan->n_blocks = (plan->cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
 }
 
@@ -139,8 +139,8 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
   return true;
 }
 
-// Everything that may change a number: the experiment's text, quality and seeds, the scenes, and the
-// program. What is skipped changes none, but it does change the images' channels.
+// Everything that may change a number: the experiment's text, quality and seeds, the scenes, and
+// the program. What is skipped changes none, but it does change the images' channels.
 static void plan_fingerprint(struct plan *plan) {
   XXH64_state_t *state = XXH64_createState();
   XXH64_reset(state, 0);
@@ -159,8 +159,8 @@ static void plan_fingerprint(struct plan *plan) {
     plan->group[g].fingerprint = plan->fingerprint + (uint64_t)g;
 }
 
-bool plan_make(const struct experiment *experiment, struct run_options options,
-               struct arena *arena, struct plan *plan, struct problem *problem) {
+bool plan_make(const struct experiment *experiment, struct run_options options, struct arena *arena,
+               struct plan *plan, struct problem *problem) {
   *plan = (struct plan){.experiment = experiment, .options = options};
   struct group *group = experiment_groups(experiment, arena, &plan->n_groups);
   plan->scene = arena_new(arena, struct loaded_scene, experiment->n_cells);

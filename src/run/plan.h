@@ -9,7 +9,7 @@
 enum { RUNS_PER_BLOCK = 16 }; // a power of two: the unit of work, checkpoint and merge
 
 struct run_options {
-  int threads;       // 0: all cores
+  int threads; // 0: all cores
   bool quiet;
   unsigned skip_off; // bits of enum skip
 };
@@ -26,18 +26,18 @@ struct loaded_scene {
 struct group_plan {
   int number;
   const struct group *group;
-  const struct cell *cell;    // the first: what all cells of the group share
+  const struct cell *cell; // the first: what all cells of the group share
   const struct loaded_scene *loaded;
   struct measurement measure;
   int n_probes;
   struct pixel *probe_pixel;
-  int *probe_point;           // where each probe is among the measured points
+  int *probe_point; // where each probe is among the measured points
   int n_checkpoints;
   uint64_t *checkpoint;
-  bool images;                // the whole film is measured
+  bool images; // the whole film is measured
   long series_width, width;
   uint64_t n_blocks;
-  uint64_t fingerprint;       // of all that determines the numbers
+  uint64_t fingerprint; // of all that determines the numbers
 };
 
 struct plan {
@@ -47,7 +47,7 @@ struct plan {
   int n_scenes;
   struct group_plan *group;
   int n_groups;
-  uint64_t fingerprint;       // of all groups
+  uint64_t fingerprint; // of all groups
 };
 
 bool plan_make(const struct experiment *, struct run_options, struct arena *, struct plan *,

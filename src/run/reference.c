@@ -44,9 +44,9 @@ static struct reference reference_of(const struct group_plan *plan, struct arena
 static void compute_unit(const struct reference *reference, uint64_t unit, double *mean,
                          struct arena scratch) {
   int n_channels = reference->measure.features.n_channels, n_probes = reference->plan->n_probes;
-  double *frame = arena_new(&scratch, double, (long)reference->measure.n_points * n_channels);
+  double *frame = arena_new(&scratch, double, (long)reference->measure.n_points *n_channels);
   double *value = arena_new(&scratch, double, reference->replicas);
-  void *state = reference->integrator->new(&reference->measure, &scratch);
+  void *state = reference->integrator->new (&reference->measure, &scratch);
   reference->integrator->begin(state, 1);
   for (uint64_t step = 0; step < STEPS_PER_UNIT; step++) {
     reference->integrator->step(state, unit * STEPS_PER_UNIT + step + 1, frame);
@@ -70,8 +70,7 @@ static void compute_round(struct reference *reference, uint64_t first, uint64_t 
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (uint64_t unit = first; unit < last; unit++) {
     struct arena own = arena_reserve();
-    if (!interrupt_signal())
-      compute_unit(reference, unit, mean + (long)(unit - first) * size, own);
+    if (!interrupt_signal()) compute_unit(reference, unit, mean + (long)(unit - first) * size, own);
     arena_release(own);
   }
   struct moments *leaf = arena_new(&scratch, struct moments, n_probes);
@@ -96,9 +95,9 @@ static double largest_se(const struct reference *reference, struct moments *root
 
 static char *cache_path(const struct group_plan *plan, const char *directory, struct arena *arena) {
   const struct cell *cell = plan->cell;
-  char *key = arena_format(arena, "2 %016llx %s %d %d %.17g", (unsigned long long)plan->loaded->scene.hash,
-                           cell->reference_integrator, cell->depth, cell->footprint,
-                           cell->reference_se);
+  char *key =
+      arena_format(arena, "2 %016llx %s %d %d %.17g", (unsigned long long)plan->loaded->scene.hash,
+                   cell->reference_integrator, cell->depth, cell->footprint, cell->reference_se);
   for (int p = 0; p < plan->n_probes; p++)
     key = arena_format(arena, "%s %d,%d", key, plan->probe_pixel[p].x, plan->probe_pixel[p].y);
   return arena_format(arena, "%s/%s-%016llx.csv", directory, cell->scene,
@@ -137,8 +136,7 @@ static bool refine(struct reference *reference, const struct run_options *option
                    struct moments *root, struct arena *arena) {
   double target = reference->plan->cell->reference_se;
   int threads = options->threads ? options->threads : omp_get_max_threads();
-  struct progress progress =
-      progress_begin("reference", 1, 0, options->quiet);
+  struct progress progress = progress_begin("reference", 1, 0, options->quiet);
   for (uint64_t done = 0, next = FIRST_UNITS;; done = next, next *= 2) {
     compute_round(reference, done, next, threads, arena);
     if (interrupt_signal()) return false;

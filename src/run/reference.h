@@ -1,5 +1,5 @@
-// What bias is measured against: an unbiased estimate at the probes with a standard error asked for,
-// cached beside the results by what determines it.
+// What bias is measured against: an unbiased estimate at the probes with a standard error asked
+// for, cached beside the results by what determines it.
 #ifndef RUN_REFERENCE_H
 #define RUN_REFERENCE_H
 

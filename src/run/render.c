@@ -48,13 +48,14 @@ bool render_image(const struct integrator_type *integrator, const struct measure
   int round = threads * ITERATIONS_PER_THREAD;
   long size = (long)measure->n_points * measure->features.n_channels;
   struct moments *moments = arena_new(arena, struct moments, size);
-  double *frames = arena_new(arena, double, size * round);
+  double *frames = arena_new(arena, double, size *round);
   struct moments_tree tree = moments_tree_new(size, arena);
   void **state = arena_new(arena, void *, threads);
-  struct arena *own = arena_new(arena, struct arena, threads), *kept = arena_new(arena, struct arena, threads);
+  struct arena *own = arena_new(arena, struct arena, threads),
+               *kept = arena_new(arena, struct arena, threads);
   for (int t = 0; t < threads; t++) {
     own[t] = kept[t] = arena_reserve();
-    state[t] = integrator->new(measure, &own[t]);
+    state[t] = integrator->new (measure, &own[t]);
     integrator->begin(state[t], 1);
   }
   interrupt_install();

@@ -1,12 +1,13 @@
-// One picture: photonlab render. The mean over iterations of one run of an integrator on all pixels.
+// One picture: photonlab render. The mean over iterations of one run of an integrator on all
+// pixels.
 #ifndef RUN_RENDER_H
 #define RUN_RENDER_H
 
 #include "image/image.h"
 #include "run/plan.h"
 
-// `measure` covers the film, one estimator. R, G, B: the mean over `iterations`; variance.*: of that
-// mean, from the differences between iterations (for a progressive radius: an upper bound's
+// `measure` covers the film, one estimator. R, G, B: the mean over `iterations`; variance.*: of
+// that mean, from the differences between iterations (for a progressive radius: an upper bound's
 // indication only, since iterations differ in law). The same bits for any number of threads.
 // False: interrupted, nothing made.
 bool render_image(const struct integrator_type *, const struct measurement *, uint64_t iterations,

@@ -15,22 +15,21 @@ static bool sample_light(const struct walk *walk, const struct connection *from,
   material->type->value(material, &from->surface, from->wo, sample->wi, f);
   if (mis && !light->type->delta) {
     double by_light = sample->pdf_solid_angle * light->probability;
-    double by_material =
-        material->type->pdf(material, &from->surface, from->wo, sample->wi);
+    double by_material = material->type->pdf(material, &from->surface, from->wo, sample->wi);
     weight = by_light / (by_light + by_material);
   }
   bool any = false;
   for (int c = 0; c < walk->n_channels; c++) {
-    value[c] = from->weight[c] * f[c] * cosine * sample->radiance_over_pdf[c] /
-               light->probability * weight;
+    value[c] = from->weight[c] * f[c] * cosine * sample->radiance_over_pdf[c] / light->probability *
+               weight;
     any = any || value[c] != 0;
   }
   return any;
 }
 
-// A shadow ray sees the sampled point iff nothing is hit before it. The emitter itself ends the ray,
-// at the same t up to rounding: what counts is that the primitive is the sampled one, met from the
-// same side.
+// A shadow ray sees the sampled point iff nothing is hit before it. The emitter itself ends the
+// ray, at the same t up to rounding: what counts is that the primitive is the sampled one, met from
+// the same side.
 static bool sees(const struct scene *scene, const struct ray *ray, struct hit hit, double distance,
                  uint32_t emitter) {
   if (hit.t >= distance) return true;

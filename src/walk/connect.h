@@ -7,8 +7,8 @@
 // A point that asks for direct light.
 struct connection {
   struct surface surface;
-  struct vec wo;      // towards the eye, unit length
-  double weight[3];   // what the radiance scattered towards wo is multiplied with
+  struct vec wo;    // towards the eye, unit length
+  double weight[3]; // what the radiance scattered towards wo is multiplied with
   int owner;
   uint64_t path;
 };

@@ -8,10 +8,10 @@
 struct eye_point {
   bool hit;
   struct surface surface;
-  struct vec wo;        // towards the eye, unit length
-  struct vec n;         // geometric normal on the side of wo
-  double weight[3];     // of radiance leaving towards wo, in the pixel
-  double emitted[3];    // radiance emitted towards wo, weight included
+  struct vec wo;     // towards the eye, unit length
+  struct vec n;      // geometric normal on the side of wo
+  double weight[3];  // of radiance leaving towards wo, in the pixel
+  double emitted[3]; // radiance emitted towards wo, weight included
 };
 
 // The rays of n <= WALK_BATCH pixels; pixel centres, or with `footprint` a uniform position in each

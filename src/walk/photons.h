@@ -15,8 +15,8 @@ struct photons {
 
 struct photon_pass {
   uint64_t n_emitted;
-  int depth;         // pbrt's maxdepth: the most scatterings, the one towards the eye included
-  int first_vertex;  // 1: the first surface is left to next-event estimation; else 0
+  int depth;        // pbrt's maxdepth: the most scatterings, the one towards the eye included
+  int first_vertex; // 1: the first surface is left to next-event estimation; else 0
 };
 
 // Which photons are worth storing (NULL: all). A pure function of the position that keeps every

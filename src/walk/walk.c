@@ -45,8 +45,7 @@ void walk_move(struct walk *walk, int to, int from) {
   walk->hit[to] = walk->hit[from];
   walk->pdf[to] = walk->pdf[from];
   walk->owner[to] = walk->owner[from];
-  for (int c = 0; c < walk->n_channels; c++)
-    walk->throughput[c][to] = walk->throughput[c][from];
+  for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
 
 void walk_trace(struct walk *walk) {
@@ -73,8 +72,7 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface) {
   if (!(walk->u[1][1][j] < survive)) return false;
   // A weight above 1 (no diffuse surface has one) always survives and keeps its weight.
   double divisor = survive < 1 ? survive : 1;
-  for (int c = 0; c < walk->n_channels; c++)
-    walk->throughput[c][j] *= sample.weight[c] / divisor;
+  for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= sample.weight[c] / divisor;
   walk->ray[j] = (struct ray){surface->p, sample.wi, INFINITY, surface->primitive};
   walk->pdf[j] = sample.pdf_solid_angle;
   return true;

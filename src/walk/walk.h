@@ -1,5 +1,6 @@
 // Batches of paths that advance together: trace the batch, then at every hit store or connect,
-// scatter, and close the gaps. Photon and eye paths share this body; what happens at a hit is theirs.
+// scatter, and close the gaps. Photon and eye paths share this body; what happens at a hit is
+// theirs.
 #ifndef WALK_WALK_H
 #define WALK_WALK_H
 
@@ -25,8 +26,8 @@ struct walk {
   double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: not sampled by one
   int *owner;            // eye paths: the point this path belongs to
 
-  double *u[4][2];       // scratch: pairs of random numbers
-  struct shadow {        // scratch of connect_lights, [WALK_BATCH] each
+  double *u[4][2]; // scratch: pairs of random numbers
+  struct shadow {  // scratch of connect_lights, [WALK_BATCH] each
     struct ray *ray;
     struct hit *hit;
     double *distance, *value[3];
