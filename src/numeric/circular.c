@@ -66,8 +66,11 @@ void num_sincos_turns(double u, double *sine, double *cosine) {
     *sine = *cosine = u;
     return;
   }
-  double k = floor(4 * u + 0.5);
-  sincos_quarter(k, pair_scale(two_pi, u - 0.25 * k), sine, cosine); // the difference is exact
+  // Of |u|, so that every difference is exact; 4 u + 1/2 would round.
+  double a = u < 0 ? -u : u, k = floor(4 * a);
+  if (4 * a - k > 0.5) k += 1;
+  sincos_quarter(k, pair_scale(two_pi, a - 0.25 * k), sine, cosine);
+  if (u < 0) *sine = -*sine;
 }
 
 // arctan(a / b) for 0 <= a <= b, b in [1/2, 2]. Turned back by arctan(c) with c = j/4 nearest to
