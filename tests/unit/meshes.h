@@ -108,4 +108,66 @@ static inline struct vec mesh_vertex(const struct mesh *m, uint32_t row) {
   return vec((double)p[0], (double)p[1], (double)p[2]);
 }
 
+// The bounds, when everything has been added.
+static inline void mesh_finish(struct mesh *m) {
+  struct scene *s = &m->scene;
+  for (uint32_t p = 0; p < s->n_primitives; p++) {
+    const struct shape *shape = &s->shape[s->shape_of[p]];
+    struct box box = shape->type->bounds(s, shape, p);
+    for (int k = 0; k < 3; k++) {
+      if (p == 0 || box.lo[k] < s->bounds.lo[k]) s->bounds.lo[k] = box.lo[k];
+      if (p == 0 || box.hi[k] > s->bounds.hi[k]) s->bounds.hi[k] = box.hi[k];
+    }
+  }
+}
+
+// Closed and convex. Neighbours compute a shared vertex from the same numbers, so they share its
+// bits.
+static inline void mesh_add_patch(struct mesh *m, struct vec center, double radius, struct vec a,
+                                  struct vec b, struct vec c, int level) {
+  if (level == 0) {
+    mesh_add_triangle(m, vec_along(center, a, radius), vec_along(center, b, radius),
+                      vec_along(center, c, radius));
+    return;
+  }
+  struct vec ab = vec_normalize(vec_add(a, b)), bc = vec_normalize(vec_add(b, c)),
+             ca = vec_normalize(vec_add(c, a));
+  mesh_add_patch(m, center, radius, a, ab, ca, level - 1);
+  mesh_add_patch(m, center, radius, ab, b, bc, level - 1);
+  mesh_add_patch(m, center, radius, ca, bc, c, level - 1);
+  mesh_add_patch(m, center, radius, ab, bc, ca, level - 1);
+}
+
+// 20 * 4^level triangles.
+static inline void mesh_add_icosphere(struct mesh *m, struct vec center, double radius, int level) {
+  static const int face[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                  {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                  {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                  {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  const double g = (1 + sqrt(5)) / 2;
+  const struct vec corner[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                                 {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                                 {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  for (int i = 0; i < 20; i++)
+    mesh_add_patch(m, center, radius, vec_normalize(corner[face[i][0]]),
+                   vec_normalize(corner[face[i][1]]), vec_normalize(corner[face[i][2]]), level);
+}
+
+// A box of 12 n^2 triangles.
+static inline void mesh_add_grid_box(struct mesh *m, struct vec center, double half, int n) {
+  for (int face = 0; face < 6; face++)
+    for (int i = 0; i < n * n; i++) {
+      struct vec corner[4];
+      for (int c = 0; c < 4; c++) {
+        double at[3];
+        at[face / 2] = face % 2 ? half : -half;
+        at[(face / 2 + 1) % 3] = half * (2.0 * (i % n + c % 2) / n - 1);
+        at[(face / 2 + 2) % 3] = half * (2.0 * (i / n + c / 2) / n - 1);
+        corner[c] = vec_add(center, vec(at[0], at[1], at[2]));
+      }
+      mesh_add_triangle(m, corner[0], corner[1], corner[3]);
+      mesh_add_triangle(m, corner[0], corner[3], corner[2]);
+    }
+}
+
 #endif
