@@ -57,8 +57,32 @@ static void aim_encoder(exr_encode_pipeline_t *pipe, const struct image *image, 
   }
 }
 
+// Libraries up to OpenEXR 3.4.7 keep deflate's output when it is exactly as long as the pixels,
+// and readers take it for the pixels themselves (openexr issue 2306). We store the pixels then.
+struct compressor {
+  exr_result_t (*library)(exr_encode_pipeline_t *);
+};
+
+static exr_result_t compress(exr_encode_pipeline_t *pipe) {
+  const struct compressor *compressor = pipe->encoding_user_data;
+  exr_result_t code = compressor->library(pipe);
+  if (!code && pipe->compressed_bytes == pipe->packed_bytes)
+    memcpy(pipe->compressed_buffer, pipe->packed_buffer, pipe->packed_bytes);
+  return code;
+}
+
+static exr_result_t choose_routines(exr_context_t file, exr_encode_pipeline_t *pipe,
+                                    struct compressor *compressor) {
+  exr_result_t code = exr_encoding_choose_default_routines(file, 0, pipe);
+  compressor->library = pipe->compress_fn;
+  pipe->encoding_user_data = compressor;
+  pipe->compress_fn = compress;
+  return code;
+}
+
 static exr_result_t write_chunks(exr_context_t file, const struct image *image) {
   exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+  struct compressor compressor;
   int32_t lines;
   exr_result_t code = exr_get_scanlines_per_chunk(file, 0, &lines);
   for (int y = 0; !code && y < image->height; y += lines) {
@@ -69,7 +93,7 @@ static exr_result_t write_chunks(exr_context_t file, const struct image *image) 
                     : exr_encoding_update(file, 0, &chunk, &pipe);
     if (code) break;
     aim_encoder(&pipe, image, y);
-    if (y == 0) code = exr_encoding_choose_default_routines(file, 0, &pipe);
+    if (y == 0) code = choose_routines(file, &pipe, &compressor);
     if (!code) code = exr_encoding_run(file, 0, &pipe);
   }
   exr_encoding_destroy(file, &pipe);
@@ -223,13 +247,20 @@ static void aim_decoder(exr_decode_pipeline_t *pipe, const struct image *image, 
   }
 }
 
+// The library does not look whether uncompressed pixels are all there.
+static exr_result_t find_chunk(exr_context_t file, int y, exr_chunk_info_t *chunk) {
+  exr_result_t code = exr_read_scanline_chunk_info(file, 0, y, chunk);
+  if (code || chunk->compression != EXR_COMPRESSION_NONE) return code;
+  return chunk->packed_size == chunk->unpacked_size ? EXR_ERR_SUCCESS : EXR_ERR_CORRUPT_CHUNK;
+}
+
 static exr_result_t read_chunks(exr_context_t file, const struct image *image, int32_t top) {
   exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
   int32_t lines;
   exr_result_t code = exr_get_scanlines_per_chunk(file, 0, &lines);
   for (int64_t row = 0; !code && row < image->height; row += lines) {
     exr_chunk_info_t chunk;
-    code = exr_read_scanline_chunk_info(file, 0, (int)(top + row), &chunk);
+    code = find_chunk(file, (int)(top + row), &chunk);
     if (!code)
       code = row == 0 ? exr_decoding_initialize(file, 0, &chunk, &pipe)
                       : exr_decoding_update(file, 0, &chunk, &pipe);

@@ -1,0 +1,200 @@
+// EXR files of other programs: what we read of them, and what we refuse in one line.
+#define _GNU_SOURCE // mkdtemp
+#include "image/image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <OpenEXR/openexr.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static struct arena arena;
+static char folder[] = "/tmp/photonlab-exr-XXXXXX";
+static const char *path;
+
+enum { WIDTH = 3, HEIGHT = 21 };
+
+struct kind {
+  exr_storage_t storage;
+  exr_pixel_type_t type;
+  exr_compression_t compression;
+  int parts, sampling;
+  int top, bottom; // rows of the data window; the display window is 0 to HEIGHT - 1
+};
+static const struct kind plain = {
+    EXR_STORAGE_SCANLINE, EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS, 1, 1, 0, HEIGHT - 1};
+
+#define OK(call) assert_int_equal(call, EXR_ERR_SUCCESS)
+
+static void add_part(exr_context_t file, struct kind kind, const char *name) {
+  int part;
+  exr_attr_box2i_t data = {{.x = 0, .y = kind.top}, {.x = WIDTH - 1, .y = kind.bottom}};
+  exr_attr_box2i_t display = {{.x = 0, .y = 0}, {.x = WIDTH - 1, .y = HEIGHT - 1}};
+  exr_attr_v2f_t centre = {.x = 0, .y = 0};
+  OK(exr_add_part(file, name, kind.storage, &part));
+  OK(exr_initialize_required_attr(file, part, &display, &data, 1, &centre, 1,
+                                  EXR_LINEORDER_INCREASING_Y, kind.compression));
+  if (kind.storage == EXR_STORAGE_TILED)
+    OK(exr_set_tile_descriptor(file, part, 8, 8, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
+  OK(exr_add_channel(file, part, "Y", kind.type, EXR_PERCEPTUALLY_LOGARITHMIC, kind.sampling,
+                     kind.sampling));
+}
+
+// The pixels as they stand in the file (4 bytes each; halves: 2).
+static void add_pixels(exr_context_t file, struct kind kind, const void *pixels) {
+  int bytes = kind.type == EXR_PIXEL_HALF ? 2 : 4;
+  int32_t lines;
+  OK(exr_get_scanlines_per_chunk(file, 0, &lines));
+  for (int y = 0; y < HEIGHT; y += lines) {
+    exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_chunk_info_t info;
+    OK(exr_write_scanline_chunk_info(file, 0, y, &info));
+    OK(exr_encoding_initialize(file, 0, &info, &pipe));
+    pipe.channels[0].encode_from_ptr = (const uint8_t *)pixels + y * WIDTH * bytes;
+    pipe.channels[0].user_pixel_stride = bytes;
+    pipe.channels[0].user_line_stride = bytes * WIDTH;
+    OK(exr_encoding_choose_default_routines(file, 0, &pipe));
+    OK(exr_encoding_run(file, 0, &pipe));
+    OK(exr_encoding_destroy(file, &pipe));
+  }
+}
+
+// On a stream of ours, which the library does not delete when pixels are missing.
+static int64_t stream_write(exr_const_context_t file, void *stream, const void *bytes, uint64_t n,
+                            uint64_t offset, exr_stream_error_func_ptr_t error) {
+  (void)file, (void)error;
+  fseek(stream, (long)offset, SEEK_SET);
+  return (int64_t)fwrite(bytes, 1, n, stream);
+}
+
+// pixels == NULL: a header alone.
+static void write_kind(struct kind kind, const void *pixels) {
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  setup.write_fn = stream_write;
+  setup.user_data = fopen(path, "wb");
+  exr_context_t file;
+  OK(exr_start_write(&file, path, EXR_WRITE_FILE_DIRECTLY, &setup));
+  for (int p = 0; p < kind.parts; p++)
+    add_part(file, kind, kind.parts == 1 ? NULL : arena_format(&arena, "part %d", p));
+  OK(exr_write_header(file));
+  if (pixels) add_pixels(file, kind, pixels);
+  exr_finish(&file);
+  fclose(setup.user_data);
+}
+
+static void assert_reads(struct kind kind, const void *pixels, const float *expected) {
+  struct problem problem = {0};
+  struct image image;
+  write_kind(kind, pixels);
+  if (!image_read(path, &arena, &image, &problem)) fail_msg("%s", problem.text);
+  assert_int_equal(image.width, WIDTH);
+  assert_int_equal(image.height, HEIGHT);
+  assert_int_equal(image.n_channels, 1);
+  assert_memory_equal(image.plane[0], expected, WIDTH * HEIGHT * sizeof *expected);
+}
+
+static float value[WIDTH * HEIGHT];
+
+static void every_lossless_compression_is_read(void **state) {
+  (void)state;
+  static const exr_compression_t row[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,
+                                          EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
+                                          EXR_COMPRESSION_PIZ};
+  for (int c = 0; c < 5; c++) {
+    struct kind kind = plain;
+    kind.compression = row[c];
+    assert_reads(kind, value, value);
+  }
+}
+
+static void half_and_uint_channels_become_floats(void **state) {
+  (void)state;
+  static uint16_t half[WIDTH * HEIGHT];
+  static uint32_t number[WIDTH * HEIGHT];
+  float expected[WIDTH * HEIGHT] = {0};
+  half[1] = 0x3c00, expected[1] = 1;
+  half[4] = 0xc0c5, expected[4] = -2.384765625f;
+  half[9] = 0x0001, expected[9] = 0x1p-24f;
+  half[62] = 0x7bff, expected[62] = 65504;
+  struct kind kind = plain;
+  kind.type = EXR_PIXEL_HALF;
+  assert_reads(kind, half, expected);
+  for (int j = 0; j < WIDTH * HEIGHT; j++) expected[j] = (float)(number[j] = 2385u * (uint32_t)j);
+  kind.type = EXR_PIXEL_UINT;
+  assert_reads(kind, number, expected);
+}
+
+static void what_we_do_not_read_is_refused_with_its_reason(void **state) {
+  (void)state;
+  struct kind tiled = plain, parts = plain, cropped = plain, sampled = plain, lossy = plain;
+  tiled.storage = EXR_STORAGE_TILED;
+  parts.parts = 2;
+  cropped.top = 3;
+  sampled.sampling = 3;
+  sampled.bottom = 20;
+  lossy.compression = EXR_COMPRESSION_B44;
+  const struct {
+    struct kind kind;
+    const char *says;
+  } row[] = {{tiled, "is tiled or deep"},
+             {parts, "has several parts"},
+             {cropped, "is cropped"},
+             {sampled, "has subsampled channels"},
+             {lossy, "its compression loses bits"},
+             {plain, "damaged exr file"}}; // a header without pixels
+  for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
+    struct problem problem = {0};
+    struct image image;
+    write_kind(row[j].kind, NULL);
+    assert_false(image_read(path, &arena, &image, &problem));
+    if (!strstr(problem.text, row[j].says))
+      fail_msg("\nexpected %s\ngot      %s", row[j].says, problem.text);
+    assert_null(strchr(problem.text, '\n'));
+  }
+}
+
+// A header may claim anything; what it claims is compared with the file before it is allocated.
+static void a_small_file_cannot_claim_a_large_image(void **state) {
+  (void)state;
+  struct kind kind = plain;
+  struct problem problem = {0};
+  struct image image;
+  write_kind(kind, value);
+  FILE *stream = fopen(path, "r+b");
+  char bytes[1024];
+  size_t n = fread(bytes, 1, sizeof bytes, stream);
+  for (size_t at = 0; at + 30 < n; at++)
+    if (memcmp(bytes + at, "dataWindow", 11) == 0 || memcmp(bytes + at, "displayWindow", 14) == 0) {
+      // name, type "box2i", size, then x_min, y_min, x_max, y_max.
+      long x_max = (long)(at + strlen(bytes + at) + 1 + 6 + 4 + 8);
+      fseek(stream, x_max, SEEK_SET);
+      fwrite((const unsigned char[]){0xff, 0xff, 0xff, 0x0f}, 1, 4, stream);
+    }
+  fclose(stream);
+  struct arena scratch = arena;
+  assert_false(image_read(path, &scratch, &image, &problem));
+  assert_non_null(strstr(problem.text, "is too short for its 268435456 x 21 pixels"));
+}
+
+int main(void) {
+  arena = arena_reserve();
+  if (!mkdtemp(folder)) die("cannot make %s", folder);
+  path = arena_format(&arena, "%s/a.exr", folder);
+  for (int j = 0; j < WIDTH * HEIGHT; j++) value[j] = 0.2385f * (float)(j / 20);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_lossless_compression_is_read),
+      cmocka_unit_test(half_and_uint_channels_become_floats),
+      cmocka_unit_test(what_we_do_not_read_is_refused_with_its_reason),
+      cmocka_unit_test(a_small_file_cannot_claim_a_large_image),
+  };
+  int failed = cmocka_run_group_tests_name("image_exr", tests, NULL, NULL);
+  unlink(path);
+  rmdir(folder);
+  return failed;
+}
