@@ -174,7 +174,7 @@ test-asan:
 # libomp tells the sanitizer of its barriers through archer; without it every one is a false race.
 test-tsan:
 	@$(MAKE) BUILD=tsan test-programs
-	@OMP_TOOL_LIBRARIES="$$(clang -print-file-name=libarcher.so)" \
+	@OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(call sanitized,tsan)
 
 test-plants:
