@@ -1,0 +1,165 @@
+// Kernels: closed forms against quadrature and against the table of theory 1.2.
+#include "density/kernel.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_integration.h>
+
+// The integrand of a moment: t^(d-1+power) psi(t)^exponent over [0, 1], psi / psi(0) from the row.
+struct moment {
+  const struct kernel *kernel;
+  int power, exponent;
+};
+
+static double integrand(double t, void *data) {
+  const struct moment *m = data;
+  double t2 = t * t, w;
+  m->kernel->shape(&t2, &w, 1);
+  return pow(t, m->power) * (m->exponent == 2 ? w * w : w);
+}
+
+// In d dimensions, per unit of psi(0)^exponent: sphere's measure times the radial integral.
+static double radial_integral(const struct kernel *kernel, int d, int power, int exponent) {
+  static const double sphere[] = {0, 2, 2 * M_PI, 4 * M_PI};
+  struct moment m = {kernel, d - 1 + power, exponent};
+  gsl_function f = {integrand, &m};
+  gsl_integration_workspace *space = gsl_integration_workspace_alloc(200);
+  double result, error;
+  int status =
+      gsl_integration_qag(&f, 0, 1, 0, 1e-12, 200, GSL_INTEG_GAUSS41, space, &result, &error);
+  gsl_integration_workspace_free(space);
+  assert_int_equal(status, 0);
+  return sphere[d] * result;
+}
+
+static void near(double got, double want, double relative, const char *kernel, int d,
+                 const char *what) {
+  if (!(fabs(got - want) <= relative * fabs(want)))
+    fail_msg("%s, d = %d: %s is %.17g, not %.17g", kernel, d, what, got, want);
+}
+
+static void constants_are_the_integrals_of_the_shape(void **state) {
+  (void)state;
+  for (int k = 0; k < n_kernels; k++)
+    for (int d = 1; d <= 3; d++) {
+      const struct kernel *kernel = &kernels[k];
+      struct kernel_constants c = kernel->constants(d);
+      near(c.c * radial_integral(kernel, d, 0, 1), 1, 1e-10, kernel->name, d, "the integral");
+      near(c.mu2, c.c * radial_integral(kernel, d, 2, 1) / d, 1e-10, kernel->name, d, "mu2");
+      near(c.roughness, c.c * c.c * radial_integral(kernel, d, 0, 2), 1e-10, kernel->name, d, "R");
+      near(c.roughness2, c.c * c.c * radial_integral(kernel, d, 2, 2), 1e-10, kernel->name, d,
+           "R2");
+    }
+}
+
+// Theory 1.2; eight digits where it prints eight. NAN: not printed there.
+static void constants_are_those_of_the_table(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    int d;
+    double c, mu2, roughness, roughness2;
+  } table[] = {
+      {"box", 1, 0.5, 1.0 / 3, 0.5, .16666667},
+      {"epanechnikov", 1, 0.75, 0.2, 0.6, .08571429},
+      {"biweight", 1, 15.0 / 16, 1.0 / 7, 5.0 / 7, .06493506},
+      {"triweight", 1, 35.0 / 32, 1.0 / 9, 350.0 / 429, .05439005},
+      {"cone", 1, 1, 1.0 / 6, 2.0 / 3, .06666667},
+      {"gaussian", 1, 1.20006678, .1081485, .85085374, .04724990},
+      {"quintic", 1, 1, 5.0 / 42, 0.783549784, NAN},
+      {"box", 2, 1 / M_PI, 0.25, 1 / M_PI, .15915494},
+      {"epanechnikov", 2, 2 / M_PI, 1.0 / 6, 4 / (3 * M_PI), .10610330},
+      {"biweight", 2, 3 / M_PI, 1.0 / 8, 9 / (5 * M_PI), .09549297},
+      {"triweight", 2, 4 / M_PI, 0.1, 16 / (7 * M_PI), .09094568},
+      {"cone", 2, 3 / M_PI, 0.15, 3 / (2 * M_PI), .09549297},
+      {"gaussian", 2, 1.44848571, .1054942, .73228847, .08127500},
+      {"quintic", 2, 7 / (2 * M_PI), 5.0 / 48, 287 / (132 * M_PI), NAN},
+      {"box", 3, 3 / (4 * M_PI), 0.2, 3 / (4 * M_PI), .14323945},
+      {"epanechnikov", 3, 15 / (8 * M_PI), 1.0 / 7, 15 / (14 * M_PI), .11368210},
+      {"biweight", 3, 105 / (32 * M_PI), 1.0 / 9, .50640209, .11686202},
+      {"triweight", 3, 315 / (64 * M_PI), 1.0 / 11, .70117213, .12373626},
+      {"cone", 3, 3 / M_PI, 2.0 / 15, .38197186, .10913482},
+      {"gaussian", 3, 1.76605756, .1019800, .64295368, .10689023},
+      {"quintic", 3, 1.336901522, 7.0 / 75, 0.666892601, NAN},
+  };
+  assert_int_equal(sizeof table / sizeof table[0], 3 * n_kernels); // a new kernel adds its rows
+  for (size_t k = 0; k < sizeof table / sizeof table[0]; k++) {
+    const struct kernel *kernel = kernel_find(table[k].name);
+    assert_non_null(kernel);
+    struct kernel_constants c = kernel->constants(table[k].d);
+    // Half a unit of the last printed digit, or exact.
+    near(c.c, table[k].c, 1e-8, table[k].name, table[k].d, "c");
+    near(c.mu2, table[k].mu2, 6e-7, table[k].name, table[k].d, "mu2");
+    near(c.roughness, table[k].roughness, 1e-8, table[k].name, table[k].d, "R");
+    if (!isnan(table[k].roughness2))
+      near(c.roughness2, table[k].roughness2, 1e-7, table[k].name, table[k].d, "R2");
+  }
+}
+
+static void shapes_start_at_one_and_never_rise(void **state) {
+  (void)state;
+  enum { N = 1000 };
+  double t2[N], w[N];
+  for (int j = 0; j < N; j++) t2[j] = (double)j / N;
+  for (int k = 0; k < n_kernels; k++) {
+    kernels[k].shape(t2, w, N);
+    assert_true(w[0] == 1);
+    for (int j = 1; j < N; j++) assert_true(w[j] <= w[j - 1] && w[j] > 0);
+  }
+}
+
+// A value does not depend on how many are asked for: one at a time, or in arrays.
+static void shapes_of_arrays_are_shapes_of_their_elements(void **state) {
+  (void)state;
+  enum { N = 19 };
+  double t2[N], w[N], one;
+  for (int j = 0; j < N; j++) t2[j] = 0.9999 * j / N;
+  for (int k = 0; k < n_kernels; k++)
+    for (int n = 0; n <= N; n++) {
+      for (int j = 0; j < N; j++) w[j] = 2.385;
+      kernels[k].shape(t2, w, n);
+      for (int j = 0; j < n; j++) {
+        kernels[k].shape(&t2[j], &one, 1);
+        assert_true(w[j] == one);
+      }
+      for (int j = n; j < N; j++) assert_true(w[j] == 2.385);
+    }
+}
+
+static void values_are_zero_from_the_support_on(void **state) {
+  (void)state;
+  for (int k = 0; k < n_kernels; k++)
+    for (int d = 1; d <= 3; d++) {
+      assert_true(kernel_value(&kernels[k], d, 0) == kernels[k].constants(d).c);
+      assert_true(kernel_value(&kernels[k], d, 0.999) > 0);
+      assert_true(kernel_value(&kernels[k], d, 1) == 0);
+      assert_true(kernel_value(&kernels[k], d, 1.0000001) == 0);
+    }
+  // Three standard deviations in the support: at |u| = 1/2, exp(-9/8).
+  double c = 9 / (2 * M_PI * (1 - exp(-4.5)));
+  near(kernel_value(kernel_find("gaussian"), 2, 0.25), c * exp(-1.125), 1e-14, "gaussian", 2,
+       "the value at 1/2");
+}
+
+static void names_find_their_rows(void **state) {
+  (void)state;
+  for (int k = 0; k < n_kernels; k++) assert_ptr_equal(kernel_find(kernels[k].name), &kernels[k]);
+  assert_null(kernel_find("boxx"));
+  assert_null(kernel_find(""));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(constants_are_the_integrals_of_the_shape),
+      cmocka_unit_test(constants_are_those_of_the_table),
+      cmocka_unit_test(shapes_start_at_one_and_never_rise),
+      cmocka_unit_test(shapes_of_arrays_are_shapes_of_their_elements),
+      cmocka_unit_test(values_are_zero_from_the_support_on),
+      cmocka_unit_test(names_find_their_rows),
+  };
+  return cmocka_run_group_tests_name("kernel", tests, NULL, NULL);
+}
