@@ -190,6 +190,9 @@ static void test_disc(void **state) {
     double x = 1 + (h2 + r2) / (r * r), f = (x - sqrt(x * x - 4 * r2 / (r * r))) / 2;
     assert_near(box_mean(&scene, vec(0, 0, 0), up, r), pi * l * f, 1e-12);
   }
+  // From far away a Lambertian point; 1 - u / sqrt D would have lost all but two digits.
+  double far = light_irradiance(&scene, vec(3000, 0, 0), up);
+  assert_near(far / (pi * l * r2 * h2 / pow(9e6 + h2, 2)), 1, 1e-6);
   assert_near(light_irradiance(&scene, vec(0, 0, 1.4), vec(0, 0, -1)), 0, 0); // its dark side
   assert_near(light_form(&scene, vec(0, 0, 0), up).photon_flux[0], pi * l * pi * r2, 1e-14);
 }
