@@ -110,15 +110,17 @@ bool ring_mean_find(const struct scene *scene, const struct cell *cell, const st
 // ---- through a kernel ----
 
 // Nodes in |u|, in which every kernel is a polynomial or an exponential.
+// GSL tables 64 nodes to full precision; most other numbers it finds to 1e-10.
+enum { RULE_NODES = 64 };
 struct kernel_rule {
-  double u2[PROFILE_NODES], weight[PROFILE_MOMENTS][PROFILE_NODES]; // 2 pi u psi^j(u) du
+  double u2[RULE_NODES], weight[PROFILE_MOMENTS][RULE_NODES]; // 2 pi u psi^j(u) du
 };
 
 static struct kernel_rule kernel_rule_new(const struct kernel *kernel) {
   struct kernel_rule rule;
-  double u[PROFILE_NODES], du[PROFILE_NODES];
-  special_gauss_legendre(PROFILE_NODES, u, du);
-  for (int k = 0; k < PROFILE_NODES; k++) {
+  double u[RULE_NODES], du[RULE_NODES];
+  special_gauss_legendre(RULE_NODES, u, du);
+  for (int k = 0; k < RULE_NODES; k++) {
     rule.u2[k] = u[k] * u[k];
     double psi = kernel_value(kernel, 2, rule.u2[k]), power = 2 * pi * u[k] * du[k];
     for (int j = 0; j < PROFILE_MOMENTS; j++) rule.weight[j][k] = power *= psi;
@@ -136,7 +138,7 @@ struct profile profile_new(const struct ring_mean *ring, const struct kernel *ke
     double value[PROFILE_NODES], hi = radius * radius;
     for (int m = 0; m < PROFILE_NODES; m++) {
       value[m] = 0;
-      for (int k = 0; k < PROFILE_NODES; k++) {
+      for (int k = 0; k < RULE_NODES; k++) {
         double density = chebyshev_value(&ring->density, rule.u2[k] * chebyshev_node(hi, m));
         value[m] += rule.weight[j][k] * (j == 0 ? density - centre : density);
       }

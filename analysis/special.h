@@ -14,7 +14,7 @@ double special_gamma_quantile(double lower, double relative_variance);
 
 double special_zeta(int k); // k >= 2
 
-// n-point Gauss-Legendre on [0, 1].
+// n-point Gauss-Legendre on [0, 1]; n one of those GSL tables to full precision (64, 96, 100, ...).
 void special_gauss_legendre(int n, double *x, double *weight);
 
 #endif

@@ -1,0 +1,216 @@
+// Exact mean, variance and kurtosis of one iteration against the closed forms of theory 5, and
+// where there is no closed form to be had.
+#define _GNU_SOURCE // mkstemp
+#include "analysis/prediction.h"
+#include "tests/light_fixture.h"
+
+#include <math.h>
+
+static struct arena arena;
+
+static const struct integrator_type photons = {
+    .name = "probabilistic", .photons = true, .independent = true};
+
+static void assert_relative(double measured, double expected, double tolerance) {
+  if (!(fabs(measured - expected) <= tolerance * fabs(expected)))
+    fail_msg("%.17g, not %.17g within %g", measured, expected, tolerance);
+}
+
+static struct cell cell_of(const char *kernel, double radius) {
+  return (struct cell){.integrator = &photons,
+                       .kernel = kernel_find(kernel),
+                       .law = law_find("knaus-zwicker"),
+                       .alpha = 2.0 / 3,
+                       .radius = radius,
+                       .photons = 1000,
+                       .direct = DIRECT_PHOTONS,
+                       .depth = 64};
+}
+
+// Scaled by 1, 1 and 1: values are irradiances.
+static struct probe probe_at(double x, double y) {
+  return (struct probe){.hit = true,
+                        .p = vec(x, y, 0),
+                        .n = vec(0, 0, 1),
+                        .scale = 1,
+                        .scale_rgb = {1, 1, 1},
+                        .reference = NAN,
+                        .reference_se = NAN};
+}
+
+static struct profile profile_at(const struct scene *scene, const char *kernel, double x,
+                                 double radius) {
+  struct cell cell = cell_of(kernel, radius);
+  struct probe probe = probe_at(x, 0);
+  struct ring_mean ring;
+  assert_true(ring_mean_find(scene, &cell, &probe, radius, arena, &ring));
+  return profile_new(&ring, cell.kernel, radius);
+}
+
+static bool has_closed_form(const char *world, struct cell cell, struct probe probe) {
+  struct scene scene = light_scene(world, &arena);
+  struct ring_mean ring;
+  return ring_mean_find(&scene, &cell, &probe, cell.radius, arena, &ring);
+}
+
+#define DOWN "\"point3 from\" [0 0 1] \"point3 to\" [0 0 0] "
+#define UNIFORM                                                                                    \
+  "LightSource \"beam\" " DOWN "\"float radius\" 1.7 \"float power\" 2.385" LIGHT_PLANE
+#define QUADRATIC                                                                                  \
+  "LightSource \"beam\" " DOWN                                                                     \
+  "\"string profile\" \"quadratic\" \"float radius\" 1.7 \"float power\" 2.385" LIGHT_PLANE
+#define GAUSSIAN                                                                                   \
+  "LightSource \"beam\" " DOWN                                                                     \
+  "\"string profile\" \"gaussian\" \"float sigma\" 0.7 \"float power\" 2.385" LIGHT_PLANE
+static const double power = 2.385, beam_radius = 1.7;
+
+// Var = (E^2 / N_e)(A R / r^2 - 1) and no bias, for every kernel; counts of the box are binomial.
+static void test_uniform(void **state) {
+  (void)state;
+  struct scene scene = light_scene(UNIFORM, &arena);
+  double area = pi * beam_radius * beam_radius, e = power / area;
+  for (int k = 0; k < n_kernels; k++) {
+    struct profile profile = profile_at(&scene, kernels[k].name, 0.3, 0.5);
+    double roughness = kernels[k].constants(2).roughness;
+    for (double r = 0.01; r < 0.5; r *= 2) {
+      double mean = profile_moment(&profile, 1, r);
+      assert_relative(mean, e, 1e-13);
+      assert_relative(profile_moment(&profile, 2, r) - mean * mean,
+                      e * e * (area * roughness / (r * r) - 1), 1e-11);
+    }
+    assert_relative(profile_roughness(&profile), e * e * area * roughness, 1e-11);
+  }
+}
+
+static void test_kurtosis_is_binomial(void **state) {
+  (void)state;
+  struct scene scene = light_scene(UNIFORM, &arena);
+  struct cell cell = cell_of("box", 1.3);
+  struct probe probe = probe_at(0, 0);
+  struct family_table table = family_table_new(cell.law, 50, &arena);
+  struct family family = family_new(&table, cell.alpha, &arena);
+  struct prediction theory = prediction_new(&scene, &cell, &probe, &family, &arena);
+  assert_true(theory.closed_form);
+  assert_true(theory.unbiased);
+  for (int j = 0; j < 50; j++) {
+    double p = 1.69 * family.rho[j] / (beam_radius * beam_radius), n = 1000, e = theory.truth;
+    double variance = e * e * (1 - p) / (p * n);
+    assert_relative(theory.divergent[j] + theory.rest[j], variance, 1e-12);
+    // The binomial's zero, at p (1 - p) = 1/6, leaves only rounding to compare with.
+    double kurtosis = (1 - 6 * p * (1 - p)) / (n * p * (1 - p));
+    assert_true(fabs(theory.kurtosis[j] - kurtosis) <= 1e-12 * (1 + fabs(kurtosis)));
+  }
+}
+
+// Bias is (mu_2 / 2) r^2 times the Laplacian -8 power / (pi a^4), exactly, for every kernel.
+static void test_quadratic_beam(void **state) {
+  (void)state;
+  struct scene scene = light_scene(QUADRATIC, &arena);
+  double laplacian = -8 * power / (pi * pow(beam_radius, 4));
+  for (int k = 0; k < n_kernels; k++) {
+    double mu2 = kernels[k].constants(2).mu2;
+    struct profile profile = profile_at(&scene, kernels[k].name, 0.4, 1.1);
+    for (double r = 0.01; r < 1.1; r *= 3)
+      assert_relative(profile_bias(&profile, r), mu2 / 2 * r * r * laplacian, 1e-9);
+  }
+}
+
+// The variance expands as R q / r^2 + R_2 / 4 times the Laplacian of q - mu^2 (theory 1.3), exactly
+// but for mu^2 where q is quadratic.
+static void test_variance_of_quadratic_beam(void **state) {
+  (void)state;
+  struct scene scene = light_scene(QUADRATIC, &arena);
+  double a2 = beam_radius * beam_radius, centre = 2 * power / (pi * a2);
+  double laplacian = -8 * power / (pi * a2 * a2);
+  for (int k = 0; k < n_kernels; k++) {
+    struct kernel_constants c = kernels[k].constants(2);
+    struct profile profile = profile_at(&scene, kernels[k].name, 0, 0.9);
+    for (double r = 0.05; r < 0.9; r *= 2) {
+      double second = power * (c.roughness * centre / (r * r) + c.roughness2 / 4 * laplacian);
+      assert_relative(profile_moment(&profile, 2, r), second, 1e-11);
+    }
+  }
+}
+
+static void test_gaussian_beam(void **state) {
+  (void)state;
+  struct scene scene = light_scene(GAUSSIAN, &arena);
+  struct profile profile = profile_at(&scene, "box", 0, 1.4);
+  for (double r = 0.1; r < 1.4; r += 0.2)
+    assert_relative(profile_moment(&profile, 1, r),
+                    power * -expm1(-r * r / (2 * 0.49)) / (pi * r * r), 1e-12);
+}
+
+#define POINT(text) "LightSource \"point\" " text "\"point3 from\" [0 0 1.3] " LIGHT_PLANE
+
+// Isotropic: at the foot the box's mean is 2 h^2 (1 - h / sqrt(h^2 + r^2)) / r^2 of the irradiance.
+static void test_isotropic_foot(void **state) {
+  (void)state;
+  struct scene scene = light_scene(POINT(""), &arena);
+  struct profile profile = profile_at(&scene, "box", 0, 0.8);
+  double h = 1.3;
+  for (double r = 0.1; r < 0.8; r += 0.1) {
+    double ratio = 2 * h * h * (1 - h / sqrt(h * h + r * r)) / (r * r);
+    assert_relative(profile_moment(&profile, 1, r) / profile.exact, ratio, 1e-12);
+  }
+}
+
+// ---- where there is none ----
+
+static void test_refusals(void **state) {
+  (void)state;
+  struct cell cell = cell_of("box", 0.5);
+  struct probe probe = probe_at(0, 0);
+  assert_true(has_closed_form(UNIFORM, cell, probe));
+  assert_false(has_closed_form(UNIFORM, cell, probe_at(1.3, 0))); // the beam's rim in the disc
+  assert_true(has_closed_form(GAUSSIAN, cell, probe_at(3.4, 3.4)));
+  assert_false(has_closed_form(GAUSSIAN, cell, probe_at(3.6, 0))); // the plane's edge
+  assert_false(has_closed_form(UNIFORM UNIFORM, cell, probe));     // two lights
+  struct cell other = cell;
+  other.direct = DIRECT_NEE;
+  assert_false(has_closed_form(UNIFORM, other, probe));
+  other = cell, other.footprint = true;
+  assert_false(has_closed_form(UNIFORM, other, probe));
+  probe.hit = false;
+  assert_false(has_closed_form(UNIFORM, cell, probe));
+}
+
+static void test_other_surfaces(void **state) {
+  (void)state;
+  struct cell cell = cell_of("box", 0.5);
+  struct probe probe = probe_at(0, 0);
+#define WALL                                                                                       \
+  "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [3 -1 0 3 1 0 3 0 2]\n"
+  assert_false(has_closed_form(UNIFORM WALL, cell, probe));
+#define BESIDE                                                                                     \
+  "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [5 -1 0 6 1 0 7 0 0]\n"
+  assert_true(has_closed_form(UNIFORM BESIDE, cell, probe));
+}
+
+// The diagonal that a plane of two triangles shares is no edge of it.
+static void test_probe_on_the_diagonal(void **state) {
+  (void)state;
+  struct probe probe = probe_at(0.2, 0.2);
+  assert_true(has_closed_form(UNIFORM, cell_of("box", 0.5), probe));
+}
+
+int main(void) {
+  arena = arena_reserve();
+  const struct CMUnitTest tests[] = {
+      {"a uniform beam gives no bias and the variance of theory 5(i), for every kernel",
+       test_uniform, 0, 0, 0},
+      {"the box's kurtosis and variance are the binomial's", test_kurtosis_is_binomial, 0, 0, 0},
+      {"a quadratic beam's bias is mu_2/2 r^2 Laplacian, for every kernel", test_quadratic_beam, 0,
+       0, 0},
+      {"a quadratic beam's second moment has two terms, for every kernel",
+       test_variance_of_quadratic_beam, 0, 0, 0},
+      {"the box on a Gaussian beam's axis has its closed form", test_gaussian_beam, 0, 0, 0},
+      {"the box at an isotropic light's foot has its closed form", test_isotropic_foot, 0, 0, 0},
+      {"there is no closed form across an edge, with two lights, footprints or direct sampling",
+       test_refusals, 0, 0, 0},
+      {"a wall takes the closed form away, a patch in the plane does not", test_other_surfaces, 0,
+       0, 0},
+      {"a probe on a shared diagonal is inside", test_probe_on_the_diagonal, 0, 0, 0},
+  };
+  return cmocka_run_group_tests_name("predict", tests, NULL, NULL);
+}
