@@ -2,6 +2,7 @@
 #include "scene/camera.h"
 #include "scene/reader.h"
 
+#include <limits.h>
 #include <string.h>
 
 static bool is_one_of(const char *name, const char *const *names, int n) {
@@ -100,22 +101,24 @@ bool read_pixel_filter(struct reader *reader, struct call *call) {
   return params_finish(params);
 }
 
-static int64_t read_positive(struct params *params, const char *name, int64_t fallback) {
-  int64_t value = params_integer(params, name, fallback);
-  if (value < 1 && value != fallback) params_complain(params, name, "%s must be at least 1", name);
-  return value;
-}
+// What no file can say: its integers are at most 2^53.
+static const int64_t absent = INT64_MIN;
 
-static int64_t read_seed(struct params *params) {
-  int64_t seed = params_integer(params, "seed", -1);
-  if (seed < -1) params_complain(params, "seed", "the seed must not be negative");
-  return seed;
+static int64_t read_at_least(struct params *params, const char *name, int64_t least,
+                             int64_t fallback) {
+  int64_t value = params_integer(params, name, absent);
+  if (value == absent) return fallback;
+  if (value < least) params_complain(params, name, "%s must be at least %d", name, (int)least);
+  return value;
 }
 
 // A jittered grid is a random position in the pixel to us; without jitter, 1 x 1 is the centre.
 static void read_stratified(struct params *params, struct scene_settings *settings) {
-  int64_t x = read_positive(params, "xsamples", 4), y = read_positive(params, "ysamples", 4);
-  if (x > 1 << 20 || y > 1 << 20) params_complain(params, "xsamples", "too many samples");
+  int64_t x = read_at_least(params, "xsamples", 1, 4), y = read_at_least(params, "ysamples", 1, 4);
+  if (x > INT_MAX || y > INT_MAX) {
+    params_complain(params, "xsamples", "xsamples and ysamples must be less than 2^31");
+    return;
+  }
   settings->spp = x * y;
   settings->centre = !params_bool(params, "jitter", true);
   if (settings->centre && settings->spp != 1)
@@ -133,9 +136,9 @@ bool read_sampler(struct reader *reader, struct call *call) {
   if (strcmp(call->type, "stratified") == 0)
     read_stratified(params, settings);
   else
-    settings->spp = read_positive(params, "pixelsamples", 16);
+    settings->spp = read_at_least(params, "pixelsamples", 1, 16);
   params_string(params, "randomization", NULL); // our numbers are always independent
-  reader->sampler_seed = read_seed(params);
+  reader->sampler_seed = read_at_least(params, "seed", 0, -1);
   return params_finish(params);
 }
 
@@ -161,19 +164,18 @@ static void read_ranges(struct params *params, struct scene_settings *settings) 
   settings->alpha = params_float(params, "alpha", NAN);
   if (settings->alpha < 0 || settings->alpha > 1)
     params_complain(params, "alpha", "alpha must be in [0, 1]");
-  int64_t depth = params_integer(params, "maxdepth", 5);
-  if (depth < 0 || depth > 1000000)
-    params_complain(params, "maxdepth", "maxdepth must be from 0 to 1000000");
+  int64_t depth = read_at_least(params, "maxdepth", 0, 5);
+  if (depth > INT_MAX) params_complain(params, "maxdepth", "maxdepth must be less than 2^31");
   settings->max_depth = (int)depth;
 }
 
 static void read_photons(struct params *params, struct scene_settings *settings) {
-  int64_t photons = read_positive(params, "photons", 0),
-          pbrt = read_positive(params, "photonsperiteration", 0);
+  int64_t photons = read_at_least(params, "photons", 1, 0),
+          pbrt = read_at_least(params, "photonsperiteration", 1, 0);
   if (photons && pbrt)
     params_complain(params, "photons", "photons and photonsperiteration are the same: give one");
   settings->photons = photons ? photons : pbrt;
-  settings->iterations = read_positive(params, "iterations", 0);
+  settings->iterations = read_at_least(params, "iterations", 1, 0);
 }
 
 static void read_names(struct params *params, struct scene_settings *settings) {
@@ -195,7 +197,7 @@ bool read_integrator(struct reader *reader, struct call *call) {
   read_ranges(params, settings);
   read_photons(params, settings);
   read_names(params, settings);
-  settings->seed = read_seed(params);
+  settings->seed = read_at_least(params, "seed", 0, -1);
   if (unbiased) read_pbrt_integrator(params);
   return params_finish(params);
 }

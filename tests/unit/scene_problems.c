@@ -1,0 +1,219 @@
+// Every wrong scene stops with one line: file:line:column: what. One row each.
+#include "scene_text.h"
+
+#define LIGHT "LightSource \"point\"\n"
+#define SPHERE "Shape \"sphere\"\n"
+#define W "WorldBegin\n"
+#define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] "
+
+static const struct {
+  const char *text;
+  int line, column;
+  const char *words; // must be part of the message
+} cases[] = {
+    // tokens
+    {W "Shape \"sphere", 2, 7, "no closing quote"},
+    {W "Shape \"sphere\n\"", 2, 7, "no closing quote"},
+    {W "Shape \"sph\\ere\"", 2, 12, "escape"},
+    {W "Shape \"sphere\" \"float radius\" [1", 2, 31, "this [ has no ]"},
+    {W "Shape \"sphere\" \"float radius\" [0x10]", 2, 32, "0x10 is not a number"},
+    {W "Shape \"sphere\" \"float radius\" [1.2.3]", 2, 32, "not a number"},
+    {W "Shape \"sphere\" \"float radius\" [1e400]", 2, 32, "too large"},
+    {W "Shape \"sphere\" \"float radius\" [-1e400]", 2, 32, "too large"},
+    {W "Shape \"sphere\" \"float radius\" nan", 2, 31, "expected a number, found nan"},
+    {W "Shape \"sphere\" \"float radius\" [inf]", 2, 32, "expected a number, found inf"},
+    {W "Shape \"sphere\" \x01", 2, 16, "unexpected byte 0x01"},
+    {W "\xef\xbb\xbf", 2, 1, "unexpected byte 0xef"},
+    // directives
+    {W "Shpae \"sphere\"", 2, 1, "did you mean Shape?"},
+    {W "Frobnicate", 2, 1, "unknown directive Frobnicate"},
+    {W "  ObjectBegin \"a\"", 2, 3, "not in this version"},
+    {W "Include \"a.pbrt\"", 2, 1, "not in this version"},
+    {W "3", 2, 1, "expected a directive, found 3"},
+    {W SPHERE "]", 3, 1, "expected a directive"},
+    {"Translate 1 2 3 4 " W, 1, 17, "expected a directive, found 4"},
+    {"Translate 1 2 " W, 1, 15, "number 3 of 3, found WorldBegin"},
+    {"LookAt 0 0 0  0 0 1  0 1", 1, 25, "the end of the file"},
+    {"Transform 1 0 0 0", 1, 11, "expected [ and 16 numbers"},
+    {"Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0]", 1, 41, "number 16 of 16"},
+    {"Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 7]", 1, 44, "expected ], found 7"},
+    {"Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1]", 1, 1, "0 0 0 1"},
+    {"Scale 1 0 1", 1, 1, "singular"},
+    {"Scale 1e200 1e200 1e200\nScale 1e200 1e200 1e200", 1, 1, "singular"},
+    {"Translate 1e308 0 0\nTranslate 1e308 0 0", 2, 1, "overflows"},
+    {"ConcatTransform [1 2 3 0 2 4 6 0 0 0 1 0 0 0 0 1]", 1, 1, "singular"},
+    {"Rotate 30 0 0 0", 1, 1, "axis has no length"},
+    {"LookAt 1 2 3  1 2 3  0 1 0", 1, 1, "LookAt"},
+    {"LookAt 1 2 3  1 5 3  0 1 0", 1, 1, "LookAt"},
+    // the order of things
+    {SPHERE, 1, 1, "Shape must come after WorldBegin"},
+    {LIGHT, 1, 1, "must come after WorldBegin"},
+    {W "Camera \"perspective\"", 2, 1, "Camera must come before WorldBegin (line 1)"},
+    {W W, 2, 1, "WorldBegin must come before WorldBegin"},
+    {"Film \"rgb\"\n", 2, 1, "no WorldBegin"},
+    {"", 1, 1, "no WorldBegin"},
+    {"# only a comment", 1, 17, "no WorldBegin"},
+    {W LIGHT, 3, 1, "no Shape"},
+    {W "AttributeEnd", 2, 1, "AttributeEnd without AttributeBegin"},
+    {W "AttributeBegin\n AttributeBegin " SPHERE "AttributeEnd\n" LIGHT, 2, 1,
+     "has no AttributeEnd"},
+    {"Film \"rgb\"\nFilm \"rgb\"", 2, 1, "a second Film (the first is in line 1)"},
+    {"Camera \"perspective\" Camera \"perspective\"", 1, 22, "a second Camera"},
+    // names of types
+    {W "Shape sphere", 2, 7, "expected a name in quotes, found sphere"},
+    {W "Shape \"spere\"", 2, 7, "did you mean \"sphere\"?"},
+    {W "Shape \"cylinder\"", 2, 7, "\"cylinder\" is not in this version"},
+    {W "Material \"conductor\"", 2, 10, "\"conductor\" is not in this version"},
+    {W "LightSource \"infinite\"", 2, 13, "\"infinite\" is not in this version"},
+    {W "LightSource \"diffuse\"", 2, 13, "not in this version"},
+    {W "AreaLightSource \"point\"", 2, 17, "not in this version"},
+    {"Camera \"orthographic\"", 1, 8, "use \"perspective\""},
+    {"Film \"gbuffer\"", 1, 6, "use \"rgb\""},
+    {"PixelFilter \"gaussian\"", 1, 13, "use \"box\""},
+    {"Sampler \"best\"", 1, 9, "use \"independent\""},
+    {"ColorSpace \"aces2065-1\"", 1, 12, "use \"srgb\""},
+    // parameters
+    {W "Shape \"sphere\" \"radius\" 1", 2, 16, "expected a parameter as \"type name\""},
+    {W "Shape \"sphere\" \"float radius big\" 1", 2, 16, "\"type name\""},
+    {W "Shape \"sphere\" \"flaot radius\" 1", 2, 16, "did you mean \"float\"?"},
+    {W "Shape \"sphere\" \"float raduis\" 1", 2, 16, "did you mean \"radius\"?"},
+    {W "Shape \"sphere\" \"float colour\" 1", 2, 16, "it reads radius, phimax, zmin, zmax"},
+    {W "Shape \"sphere\" \"float radius\"", 2, 30, "expected a number, found the end of the file"},
+    {W "Shape \"sphere\" \"float radius\" []", 2, 16, "has no value"},
+    {W "Shape \"sphere\" \"float radius\" [1 2]", 2, 16, "needs 1 value, has 2"},
+    {W "Shape \"sphere\" \"float radius\" [[1]]", 2, 32, "expected a number, found ["},
+    {W "Shape \"sphere\" \"float radius\" \"1\"", 2, 31, "expected a number"},
+    {W "Shape \"sphere\" \"integer radius\" 1", 2, 16, "must be of type float, not integer"},
+    {W "Shape \"sphere\" \"float radius\" 1\n\"float radius\" 2", 3, 1, "already given at line 2"},
+    {W "Shape \"sphere\" \"string alpha\" 1", 2, 31, "expected a string"},
+    {"Film \"rgb\" \"bool savefp16\" yes", 1, 28, "expected true or false"},
+    {"Film \"rgb\" \"integer xresolution\" 1.5", 1, 34, "expected an integer, found 1.5"},
+    {W "Material \"diffuse\" \"spectrum reflectance\" [400 1 \"a\"]", 2, 20, "mixes"},
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 .5]", 2, 20, "groups of 3"},
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5 .5 .5 .5]", 2, 20, "needs 3 values"},
+    // values
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 1.01 .5]", 2, 20, "outside [0, 1]"},
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 -.1 .5]", 2, 20, "outside [0, 1]"},
+    {W "Material \"diffuse\" \"spectrum reflectance\" \"wood\"", 2, 20, "must be of type rgb"},
+    {W "Material \"diffuse\" \"texture reflectance\" \"wood\"", 2, 20, "must be of type rgb"},
+    {"Camera \"perspective\" \"float fov\" 180", 1, 22, "between 0 and 180"},
+    {"Camera \"perspective\" \"float fov\" 0", 1, 22, "between 0 and 180"},
+    {"Camera \"perspective\" \"float lensradius\" .1", 1, 22, "\"lensradius\" must be 0"},
+    {"Camera \"perspective\" \"float shutterclose\" .5", 1, 22, "\"shutterclose\" must be 1"},
+    {"Camera \"perspective\" \"float screenwindow\" [-1 1 -1 1]\n" W SPHERE, 1, 1, "screenwindow"},
+    {"Camera \"perspective\" \"float frameaspectratio\" 1\n" W SPHERE, 1, 1, "frameaspectratio"},
+    {"Film \"rgb\" \"integer xresolution\" 0", 1, 12, "from 1 to 65536"},
+    {"Film \"rgb\" \"integer yresolution\" -3", 1, 12, "from 1 to 65536"},
+    {"Film \"rgb\" \"integer yresolution\" 4294967297", 1, 12, "from 1 to 65536"},
+    {"PixelFilter \"box\" \"float xradius\" 1.5", 1, 19, "must be 0.5"},
+    {"Sampler \"independent\" \"integer pixelsamples\" 0", 1, 23, "at least 1"},
+    {"Sampler \"stratified\" \"bool jitter\" false", 1, 22, "must be 1: the pixel's centre"},
+    {"Sampler \"independent\" \"integer seed\" -7", 1, 23, "seed must be at least 0"},
+    {"Sampler \"independent\" \"integer seed\" -1", 1, 23, "seed must be at least 0"},
+    {"Integrator \"path\" \"bool regularize\" true", 1, 19, "must be false"},
+    {"Integrator \"path\" \"integer maxdepth\" -1", 1, 19, "maxdepth"},
+    {"Integrator \"probabilistic\" \"float radius\" 0", 1, 28, "must be positive"},
+    {"Integrator \"probabilistic\" \"float alpha\" 1.5", 1, 28, "alpha must be in [0, 1]"},
+    {"Integrator \"probabilistic\" \"integer photons\" 0", 1, 28, "must be at least 1"},
+    {"Integrator \"probabilistic\" \"integer photons\" 5 \"integer photonsperiteration\" 6", 1, 28,
+     "give one"},
+    {"Integrator \"probabilistic\" \"string direct\" \"both\"", 1, 28, "\"photons\" or \"nee\""},
+    {"Integrator \"probabilistic\" \"float alhpa\" .5", 1, 28, "did you mean \"alpha\"?"},
+    // shapes
+    {W "Shape \"sphere\" \"float radius\" 0", 2, 16, "radius must be positive"},
+    {W "Shape \"sphere\" \"float zmin\" -2", 2, 16, "zmin must be in"},
+    {W "Shape \"sphere\" \"float zmax\" 1.5", 2, 16, "zmax must be in"},
+    {W "Shape \"sphere\" \"float zmin\" .5 \"float zmax\" .25", 2, 32, "zmax must be in"},
+    {W "Shape \"disk\" \"float phimax\" 400", 2, 14, "phimax must be in"},
+    {W "Shape \"disk\" \"float innerradius\" 1", 2, 14, "innerradius must be in"},
+    {W "Scale 1e30 1e30 1e30 Translate 1e10 0 0\n" SPHERE, 3, 1, "does not fit into floats"},
+    {W "Shape \"trianglemesh\"", 2, 1, "\"point3 P\" is missing"},
+    {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]", 2, 22,
+     "indices\" is missing"},
+    {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1]", 2, 22, "groups of 3"},
+    {W TRIANGLE "\"integer indices\" [0 1]", 2, 53, "not a multiple of 3"},
+    {W TRIANGLE "\"integer indices\" [0 1 3]", 2, 53,
+     "index number 3 is 3, but the vertices are 0 to 2"},
+    {W TRIANGLE "\"integer indices\" [0 -1 2]", 2, 53, "index number 2 is -1"},
+    {W TRIANGLE "\"integer indices\" [0 1 4294967296]", 2, 53, "is 4294967296"},
+    {W TRIANGLE "\"normal N\" [0 0 1 0 0 1 0 0 1]", 2, 53, "\"N\" is not in this version"},
+    {W TRIANGLE "\"point2 uv\" [0 0 1 0 0 1]", 2, 53, "\"uv\" is not in this version"},
+    {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1e39 0]", 2, 22, "vertex 2 is too far"},
+    {W "Scale 1e20 1e20 1e20 Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1e19 0]", 2, 43,
+     "vertex 2 is too far"},
+    // lights
+    {W "Scale 1 2 1\nAreaLightSource \"diffuse\"\nShape \"sphere\"", 4, 1, "cannot be stretched"},
+    {W "LightSource \"point\" \"rgb I\" [0 0 0]\n" SPHERE, 2, 1, "no light emits anything"},
+    {W "LightSource \"point\" \"rgb I\" [1e308 1e308 1e308] \"float scale\" 1e10\n" SPHERE, 2, 49,
+     "finite"},
+    {W "LightSource \"point\" \"rgb J\" [1 1 1]\n" SPHERE, 2, 21,
+     "does not read a parameter \"J\""},
+};
+enum { N_CASES = (int)(sizeof cases / sizeof *cases) };
+
+static bool is_one_line(const char *text) {
+  for (; *text; text++)
+    if ((unsigned char)*text < 0x20) return false;
+  return true;
+}
+
+static bool check_case(int i) {
+  struct scene scene;
+  struct problem problem;
+  char place[64];
+  snprintf(place, sizeof place, "t.pbrt:%d:%d: ", cases[i].line, cases[i].column);
+  bool accepted = scene_of_bytes(cases[i].text, (ptrdiff_t)strlen(cases[i].text), &scene, &problem);
+  if (!accepted && strncmp(problem.text, place, strlen(place)) == 0 &&
+      strstr(problem.text, cases[i].words) && is_one_line(problem.text))
+    return true;
+  print_error("%s\ngives    %s\nwanted   %s%s\n", cases[i].text, problem.text, place,
+              cases[i].words);
+  return false;
+}
+
+static void every_wrong_scene_gives_one_line_with_its_place(void **state) {
+  (void)state;
+  int wrong = 0;
+  for (int i = 0; i < N_CASES; i++) wrong += !check_case(i);
+  assert_int_equal(wrong, 0);
+}
+
+static void a_zero_byte_is_a_problem(void **state) {
+  (void)state;
+  struct scene scene;
+  struct problem problem;
+  assert_false(scene_of_bytes("WorldBegin\n\0Shape", 17, &scene, &problem));
+  assert_string_equal(problem.text, "t.pbrt:2:1: unexpected byte 0x00");
+}
+
+static void a_missing_file_and_a_directory_are_problems(void **state) {
+  (void)state;
+  struct arena keep = test_memory()->keep;
+  struct scene scene;
+  struct problem problem = {{0}};
+  assert_false(scene_read("tests/data/no-such-scene.pbrt", &keep, &scene, &problem));
+  assert_non_null(strstr(problem.text, "no-such-scene.pbrt: "));
+  problem = (struct problem){{0}};
+  assert_false(scene_read("tests", &keep, &scene, &problem));
+  assert_non_null(strstr(problem.text, "directory"));
+}
+
+static void a_file_on_disk_gives_its_own_name_and_place(void **state) {
+  (void)state;
+  struct arena keep = test_memory()->keep;
+  struct scene scene;
+  struct problem problem = {{0}};
+  assert_false(scene_read("tests/data/scenes/unknown-directive.pbrt", &keep, &scene, &problem));
+  assert_string_equal(problem.text, "tests/data/scenes/unknown-directive.pbrt:3:1: "
+                                    "unknown directive Shpae; did you mean Shape?");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_wrong_scene_gives_one_line_with_its_place),
+      cmocka_unit_test(a_zero_byte_is_a_problem),
+      cmocka_unit_test(a_missing_file_and_a_directory_are_problems),
+      cmocka_unit_test(a_file_on_disk_gives_its_own_name_and_place),
+  };
+  return cmocka_run_group_tests_name("scene_problems", tests, NULL, NULL);
+}
