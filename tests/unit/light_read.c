@@ -184,7 +184,7 @@ static void test_degenerate_triangle(void **state) {
   assert_close(scene.light[0].power[0], 6);
   int count[5] = {0};
   for (int j = 0; j < 1000; j++) {
-    double u[LIGHT_U] = {(j + 0.5) / 1000, 0.3, 0.4, 0.5};
+    double u[LIGHT_U] = {j / 1000., 0.3, 0.4, 0.5};
     struct emission photon;
     scene.light[0].type->emit(&scene, &scene.light[0], u, &photon);
     count[photon.ray.leaving]++;

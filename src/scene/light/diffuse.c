@@ -78,13 +78,13 @@ static uint32_t choose(const struct diffuse *diffuse, double x) {
   return lo;
 }
 
-// A point of the emitter; u0 is used twice: which primitive, and its remainder within that one.
+// A point of the emitter; u0 is used twice: which primitive, and its remainder within that one. The
+// remainder stays below 1: x and cdf[k + 1] differ by an ulp at least, and so do both differences.
 static uint32_t sample_point(const struct scene *scene, const struct diffuse *diffuse, double u0,
                              double u1, struct vec *p, struct vec *ng) {
   double x = u0 * cdf_total(diffuse);
   uint32_t k = choose(diffuse, x), primitive = diffuse->shape->first + k;
   double rest = (x - diffuse->cdf[k]) / (diffuse->cdf[k + 1] - diffuse->cdf[k]);
-  if (!(rest < 1)) rest = 1 - 0x1p-53; // rounded up: the largest number below 1 instead
   diffuse->shape->type->sample(scene, diffuse->shape, primitive, rest, u1, p, ng);
   return primitive;
 }
