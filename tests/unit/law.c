@@ -109,9 +109,12 @@ static void knaus_zwicker_has_the_golden_values_to_2e_15(void **state) {
       {0.4616, 1000, 0.027384628778930875146},
       {0.4616, 1000000000000000, 9.4789629418412849035e-9},
   };
-  for (size_t k = 0; k < sizeof golden / sizeof golden[0]; k++)
-    near(knaus_zwicker()->rho(golden[k].alpha, golden[k].i), golden[k].rho, 2e-15, golden[k].alpha,
-         golden[k].i);
+  // The product of i < 20 rounds up to 54 times. Beyond, six operations of at most 0.65 ulp each,
+  // 9e-16: pow(w, alpha - 1) instead of pow(w, alpha)/w would not do.
+  for (size_t k = 0; k < sizeof golden / sizeof golden[0]; k++) {
+    double alpha = golden[k].alpha, bound = golden[k].i < 20 ? 2e-15 : 9e-16;
+    near(knaus_zwicker()->rho(alpha, golden[k].i), golden[k].rho, bound, alpha, golden[k].i);
+  }
 }
 
 // A 0-based index gives rho_2 = alpha, an update before the first pass alpha rho_1 (theory 2.1).
