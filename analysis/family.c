@@ -35,13 +35,15 @@ struct family family_new(const struct family_table *table, double alpha, struct 
 
 // Lagrange's polynomials of the nodes and their derivatives at x in [0, 1].
 static void lagrange(double x, double value[FAMILY_NODES], double slope[FAMILY_NODES]) {
+  double at[FAMILY_NODES];
+  for (int k = 0; k < FAMILY_NODES; k++) at[k] = node(k);
   for (int k = 0; k < FAMILY_NODES; k++) {
     value[k] = 1, slope[k] = 0;
     for (int j = 0; j < FAMILY_NODES; j++) {
       if (j == k) continue;
-      double step = 1 / (node(k) - node(j));
-      slope[k] = (slope[k] * (x - node(j)) + value[k]) * step;
-      value[k] *= (x - node(j)) * step;
+      double step = 1 / (at[k] - at[j]);
+      slope[k] = (slope[k] * (x - at[j]) + value[k]) * step;
+      value[k] *= (x - at[j]) * step;
     }
   }
 }

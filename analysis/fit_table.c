@@ -52,7 +52,7 @@ static void print_rate(const struct fit_row *row, char *text) {
 }
 static void print_interval(const struct fit_row *row, char *text) {
   copy(text, "");
-  if (isfinite(row->rate)) snprintf(text, CELL_SIZE, "[%.4f, %.4f]", row->rate_lo, row->rate_hi);
+  if (isfinite(row->rate)) snprintf(text, CELL_SIZE, "[%.3f, %.3f]", row->rate_lo, row->rate_hi);
 }
 static void print_ratio(const struct fit_row *row, char *text) {
   copy(text, "-");

@@ -1,0 +1,152 @@
+// What the fit must notice. Each planted defect is many standard errors away at this size (the
+// smallest, reuse, multiplies a variance by more than 100), so a run that does not disagree has a
+// probability far below 1e-4; and without defect nothing is found.
+#include "tests/statistical/fit_synthetic.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static struct arena arena;
+
+static const struct synthetic base = {.name = "fit: plants",
+                                      .alpha = 2.0 / 3,
+                                      .iterations = 1000,
+                                      .runs = 32,
+                                      .photons_1 = 50,
+                                      .curvature = 0.5,
+                                      .closed_form = true};
+
+static struct fit fit_of(const struct synthetic *s) { return synthetic_fit(s, 1, &arena); }
+
+static void assert_rejects(const struct fit_row *row, const char *name) {
+  const struct fit_test *test = synthetic_test(row, name);
+  assert_non_null(test);
+  if (!test->rejects) fail_msg("%s: p = %g", name, test->p);
+  assert_int_equal(row->verdict, VERDICT_DISAGREE);
+}
+
+static void test_no_defect(void **state) {
+  (void)state;
+  struct fit fit = fit_of(&base);
+  assert_int_equal(fit.verdict, VERDICT_AGREE);
+  assert_int_equal(fit.row[0].verdict, VERDICT_AGREE);
+  assert_int_equal(fit.row[1].verdict, VERDICT_AGREE);
+}
+
+// Updated before the first pass: rho'_i = alpha rho_i.
+static double before_first(double alpha, double rho, uint64_t i) {
+  (void)i;
+  return alpha * rho;
+}
+
+static void test_zero_based_index(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.r2 = before_first;
+  struct fit fit = fit_of(&s);
+  assert_int_equal(fit.verdict, VERDICT_DISAGREE);
+  assert_rejects(&fit.row[0], "coefficient");
+  assert_rejects(&fit.row[1], "coefficient");
+}
+
+// The law for volumes, r^3, on a surface: r^2 goes as rho^(2/3).
+static double cubed(double alpha, double rho, uint64_t i) {
+  (void)alpha, (void)i;
+  return cbrt(rho * rho);
+}
+
+static void test_volume_law(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.r2 = cubed;
+  struct fit fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "rate");
+  assert_rejects(&fit.row[1], "rate");
+  s.closed_form = false, s.runs = 200; // the rate alone gives it away
+  fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "rate");
+}
+
+static double never_shrinks(double alpha, double rho, uint64_t i) {
+  (void)alpha, (void)rho, (void)i;
+  return 1;
+}
+
+static void test_fixed_radius(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.r2 = never_shrinks;
+  struct fit fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "rate");
+  assert_rejects(&fit.row[1], "rate");
+}
+
+// A truncated Gaussian that was not normalised: 0.989 of what it should be.
+static void test_unnormalised_kernel(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.factor = 0.989;
+  struct fit fit = fit_of(&s);
+  assert_rejects(&fit.row[1], "coefficient");
+  s.factor = 0.5312;
+  fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "coefficient");
+}
+
+static void test_reused_seed(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.reuse = true;
+  struct fit fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "independence");
+  assert_rejects(&fit.row[1], "independence");
+}
+
+// A13: at least 95 % of 200; at the family-wise 1 % five failures have probability 0.05, ten 2e-5.
+static void test_zero_bias(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: zero bias", s.curvature = 0, s.iterations = 300, s.runs = 20;
+  int not_detected = 0;
+  for (uint64_t e = 1; e <= 200; e++) {
+    struct arena scratch = arena;
+    struct fit fit = synthetic_fit(&s, e, &scratch);
+    not_detected += fit.row[1].verdict == VERDICT_NOT_DETECTED;
+    assert_false(isfinite(fit.row[1].rate));
+    assert_false(isfinite(fit.row[1].rate_theory));
+  }
+  assert_in_range(not_detected, 190, 200);
+}
+
+// Nothing is known without closed form, and the bias is a hundredth of what could be seen.
+static void test_nothing_to_see(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.closed_form = false, s.curvature = 1e-4, s.runs = 8, s.iterations = 200;
+  struct fit fit = fit_of(&s);
+  assert_int_equal(fit.row[1].verdict, VERDICT_NOT_DETECTED);
+  assert_true(fit.row[1].upper_bound >= 1e-4 / 2);
+  s.runs = 1;
+  fit = fit_of(&s);
+  assert_int_equal(fit.row[0].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
+}
+
+int main(void) {
+  arena = arena_reserve();
+  const struct CMUnitTest tests[] = {
+      {"a run without defect agrees", test_no_defect, 0, 0, 0},
+      {"an index from 0 disagrees", test_zero_based_index, 0, 0, 0},
+      {"the law of volumes on a surface disagrees", test_volume_law, 0, 0, 0},
+      {"a radius that does not shrink disagrees", test_fixed_radius, 0, 0, 0},
+      {"a kernel that is not normalised disagrees", test_unnormalised_kernel, 0, 0, 0},
+      {"iterations with the same photons are not independent", test_reused_seed, 0, 0, 0},
+      {"where there is no bias none is detected", test_zero_bias, 0, 0, 0},
+      {"too few runs say so", test_nothing_to_see, 0, 0, 0},
+  };
+  return cmocka_run_group_tests_name("fit_plants", tests, NULL, NULL);
+}
