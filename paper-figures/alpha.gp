@@ -29,29 +29,31 @@ set datafile columnheaders
 probe = ""; alphas = ""; rows = ""; biased = ""; n_max = 1
 alpha_text(a) = abs(a - 2./3) < 1e-9 ? "2/3" : sprintf("%g", a)
 add_probe(s, x, y) = strstrt(probe, "|".s.":") ? 0 : (probe = probe."|".s.":".x.",".y."|", 1)
+shown(s, x, y) = strstrt(probe, "|".s.":".x.",".y."|") > 0
 add_alpha(a) = strstrt(alphas, " ".alpha_text(a)." ") ? 0 : (alphas = alphas." ".alpha_text(a)." ", 1)
 row_name(s, q, a) = "|".s.":".q.":".a."|"
-add_row(r) = strstrt(rows, r) ? 0 : (rows = rows.r, 1)
+add_row(r) = !strstrt(rows, r) ? (rows = rows.r, 1) : 0
 set xrange [-1:1]
 set yrange [-1:1]
 add_biased(s, q, p) = q eq "variance" || p == 0 || strstrt(biased, s) ? 0 : (biased = biased." ".s, 1)
 set table $seen
 plot data using (add_probe(strcol("scene"), strcol("x"), strcol("y")), \
-  add_alpha(column("alpha")), add_row(row_name(strcol("scene"), strcol("quantity"), alpha_text(column("alpha")))), \
+  add_alpha(column("alpha")), !shown(strcol("scene"), strcol("x"), strcol("y")) ? 0 : \
+    add_row(row_name(strcol("scene"), strcol("quantity"), alpha_text(column("alpha")))), \
   add_biased(strcol("scene"), strcol("quantity"), column("predicted")), \
   n_max = column("N") > n_max ? column("N") : n_max, 0):(0) with points
 unset table
 if (words(alphas) == 0) { print data.": has no rows"; exit status 1 }
-do for [scene in scenes] { do for [quantity in "variance bias"] { do for [a in alphas] {
-  if (!strstrt(rows, row_name(scene, quantity, a))) {
-    print sprintf("%s: no %s of %s at alpha %s", data, quantity, scene, a)
+# A scene without any curve is an error; a curve the fit could not predict is named in its panel.
+do for [scene in scenes] { do for [quantity in "variance bias"] {
+  if (!strstrt(rows, "|".scene.":".quantity.":")) {
+    print sprintf("%s: no %s of %s", data, quantity, scene)
     exit status 1
   }
-} } }
+} }
 if (words(alphas) > 6) { print data.": more than 6 alphas; the palette has 6 colours"; exit status 1 }
 
 # ---- the series of a panel: blocks $series1, ... of N, size, lower, upper, predicted, found ----
-shown(s, x, y) = strstrt(probe, "|".s.":".x.",".y."|") > 0
 mine(s, a, q) = strcol("scene") eq s && strcol("quantity") eq q && \
   alpha_text(column("alpha")) eq a && shown(s, strcol("x"), strcol("y"))
 # A variance is drawn as it stands, a bias by its size.
@@ -61,7 +63,7 @@ found(q) = q eq "variance" || abs(column("measured")) >= 2 * error(q)
 lower(q) = q eq "variance" ? column("lower") : abs(column("measured")) - z * error(q)
 upper(q) = q eq "variance" ? column("upper") : abs(column("measured")) + z * error(q)
 drawn(p) = p == 0 ? NaN : abs(p)
-series(j) = sprintf("$series%d", j)
+series(j) = "$series".j
 
 # ---- looks: Okabe and Ito's colours; shapes differ too ----
 colour(j) = word("#0072B2 #D55E00 #009E73 #CC79A7 #E69F00 #56B4E9", j)
@@ -109,29 +111,33 @@ do for [terminal_name in "pdf svg png"] {
       if (c == 1) {
         set ylabel row == 1 ? "variance of the average" : "|bias| of the average" offset 1.2,0
       } else { unset ylabel }
-      if (row == 2 && !strstrt(biased, scene)) {
-        set label 1 "predicted: no bias" at graph 0.05,0.07 left textcolor "#666666"
-      } else { unset label 1 }
+      here = ""; absent = ""
       do for [j = 1:n_alphas] {
-        eval "set table ".series(j)
-        plot data using (column("N")):(abs(column("measured"))):(lower(quantity)):(upper(quantity)):\
-          (drawn(column("predicted"))):(found(quantity)) \
-          with table if (mine(scene, word(alphas, j), quantity))
-        unset table
+        if (strstrt(rows, row_name(scene, quantity, word(alphas, j)))) {
+          here = here." ".j
+          eval "set table ".series(j)
+          plot data using (column("N")):(abs(column("measured"))):(lower(quantity)):(upper(quantity)):\
+            (drawn(column("predicted"))):(found(quantity)) \
+            with table if (mine(scene, word(alphas, j), quantity))
+          unset table
+        } else { absent = absent." ".word(alphas, j) }
       }
+      note = row == 2 && !strstrt(biased, scene) ? "predicted: no bias" : ""
+      if (absent ne "") { note = "not resolvable: α =".absent }
+      set label 1 note at graph 0.05,0.07 left textcolor "#666666" font ",7"
       set datafile separator whitespace
       unset datafile columnheaders
       plot \
-        for [j = 1:n_alphas] series(j) using 1:5 with lines linewidth 0.9 linecolor rgb colour(j), \
-        for [j = 1:n_alphas] series(j) using 1:($6 == 1 ? $2 : NaN):3:4 with yerrorbars linewidth 0.6 \
-          pointtype full(j) linecolor rgb colour(j), \
-        for [j = 1:n_alphas] series(j) using 1:($6 == 1 ? NaN : $4):(0):(-0.35 * $4) with vectors \
-          head size screen 0.003,25 filled linewidth 0.4 linecolor rgb colour(j), \
-        for [j = 1:n_alphas] series(j) using 1:($6 == 1 ? NaN : $4) with points pointtype hollow(j) \
-          linewidth 0.6 linecolor rgb colour(j), \
-        for [j = 1:n_alphas] series(j) using 1:($1 == n_max ? $5 : NaN):\
-          (slope_text(word(alphas, j), quantity)) with labels left offset 0.5,0 font ",7" \
-          textcolor rgb colour(j)
+        for [j in here] series(j) using 1:5 with lines linewidth 0.9 linecolor rgb colour(int(j)), \
+        for [j in here] series(j) using 1:($6 == 1 ? $2 : NaN):3:4 with yerrorbars linewidth 0.6 \
+          pointtype full(int(j)) linecolor rgb colour(int(j)), \
+        for [j in here] series(j) using 1:($6 == 1 ? NaN : $4):(0):(-0.35 * $4) with vectors \
+          head size screen 0.003,25 filled linewidth 0.4 linecolor rgb colour(int(j)), \
+        for [j in here] series(j) using 1:($6 == 1 ? NaN : $4) with points pointtype hollow(int(j)) \
+          linewidth 0.6 linecolor rgb colour(int(j)), \
+        for [j in here] series(j) using 1:($1 == n_max ? $5 : NaN):\
+          (slope_text(word(alphas, int(j)), quantity)) with labels left offset 0.5,0 font ",7" \
+          textcolor rgb colour(int(j))
       set datafile separator comma
       set datafile columnheaders
     }
