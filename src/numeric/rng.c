@@ -1,11 +1,16 @@
 // Philox4x32-10: ten rounds of two 32 x 32 -> 64 bit products and four exclusive ors a block.
 #include "numeric/rng.h"
+#include "numeric/rng_level.h"
+
+#include "base/problem.h"
 
 #include <assert.h>
+#include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
+#ifdef __x86_64__
+#include <immintrin.h>
 #endif
 
 enum { ROUNDS = 10 };
@@ -42,70 +47,69 @@ static void fill_one(struct rng_key key, uint64_t iteration, uint64_t path, uint
   *u1 = (double)(((uint64_t)out[3] << 32 | out[2]) >> 11) * 0x1p-53;
 }
 
-// The same for BLOCK paths at once. A lane holds a 32-bit word in its low half; what is in the
-// high half is never used.
-typedef uint64_t lanes __attribute__((vector_size(16)));
-typedef double lanes_double __attribute__((vector_size(16)));
-enum { WIDTH = 2, VECTORS = 4, BLOCK = WIDTH * VECTORS };
+static int fill_scalar(struct rng_key key, uint64_t iteration, const uint64_t *path, int n,
+                       uint32_t pair, double *u0, double *u1) {
+  for (int j = 0; j < n; j++) fill_one(key, iteration, path[j], pair, &u0[j], &u1[j]);
+  return n;
+}
 
-static inline lanes lanes_all(uint64_t x) { return (lanes){x, x}; }
+#ifdef __x86_64__
+#define LANES(name) name##_sse2
+#define WIDTH 2
+#define MULTIPLY(a, b) (lanes) _mm_mul_epu32((__m128i)(a), (__m128i)(b))
+#define TARGET
+#include "numeric/rng_block.h"
 
-// The 64-bit product of the low halves.
-static inline lanes lanes_multiply(lanes a, lanes b) {
-#ifdef __SSE2__ // gcc does not see that the masks below are what pmuludq does
-  return (lanes)_mm_mul_epu32((__m128i)a, (__m128i)b);
-#else
-  return (a & lanes_all(UINT32_MAX)) * (b & lanes_all(UINT32_MAX));
+#define LANES(name) name##_avx2
+#define WIDTH 4
+#define MULTIPLY(a, b) (lanes) _mm256_mul_epu32((__m256i)(a), (__m256i)(b))
+#define TARGET __attribute__((target("avx2")))
+#include "numeric/rng_block.h"
+
+#define LANES(name) name##_avx512
+#define WIDTH 8
+#define MULTIPLY(a, b) (lanes) _mm512_mul_epu32((__m512i)(a), (__m512i)(b))
+#define TARGET __attribute__((target("avx512f")))
+#include "numeric/rng_block.h"
 #endif
+
+int rng_levels(struct rng_level level[RNG_MOST_LEVELS]) {
+  int n = 0;
+  level[n++] = (struct rng_level){"scalar", fill_scalar};
+#ifdef __x86_64__
+  level[n++] = (struct rng_level){"sse2", fill_sse2};
+  if (__builtin_cpu_supports("avx2")) level[n++] = (struct rng_level){"avx2", fill_avx2};
+  if (__builtin_cpu_supports("avx512f")) level[n++] = (struct rng_level){"avx512", fill_avx512};
+#endif
+  return n;
 }
 
-// The top 53 bits of high:low times 2^-53. SSE2 cannot convert 64-bit integers, so each half is
-// placed under the exponent where it has its weight: 2^84 + 2^32 a, 2^52 + b. Every step is exact.
-static inline lanes_double lanes_unit_interval(lanes low, lanes high) {
-  lanes bits = (high << 32 | (low & lanes_all(UINT32_MAX))) >> 11;
-  lanes_double a = (lanes_double)(bits >> 32 | lanes_all(0x4530000000000000));
-  lanes_double b = (lanes_double)((bits & lanes_all(UINT32_MAX)) | lanes_all(0x4330000000000000));
-  const double both = 0x1p84 + 0x1p52, unit = 0x1p-53;
-  return ((a - (lanes_double){both, both}) + b) * (lanes_double){unit, unit};
-}
+static struct rng_level chosen;
 
-static void fill_block(struct rng_key key, uint64_t iteration, const uint64_t *path, uint32_t pair,
-                       double *u0, double *u1) {
-  lanes c0[VECTORS], c1[VECTORS], c2[VECTORS], c3[VECTORS];
-  for (int v = 0; v < VECTORS; v++) {
-    memcpy(&c1[v], path + v * WIDTH, sizeof c1[v]);
-    c0[v] = lanes_all(pair);
-    c2[v] = c1[v] >> 32 | lanes_all((iteration & 0xffff) << 16);
-    c3[v] = lanes_all(iteration >> 16);
-  }
-  uint32_t k0 = key.word[0], k1 = key.word[1];
-  for (int round = 0; round < ROUNDS; round++) {
-    for (int v = 0; v < VECTORS; v++) {
-      lanes p0 = lanes_multiply(c0[v], lanes_all(multiplier0));
-      lanes p1 = lanes_multiply(c2[v], lanes_all(multiplier1));
-      c0[v] = p1 >> 32 ^ c1[v] ^ lanes_all(k0);
-      c1[v] = p1;
-      c2[v] = p0 >> 32 ^ c3[v] ^ lanes_all(k1);
-      c3[v] = p0;
+static void choose_level(void) {
+  struct rng_level level[RNG_MOST_LEVELS];
+  int n = rng_levels(level);
+  const char *name = getenv("PHOTONLAB_SIMD");
+  chosen = level[n - 1];
+  if (!name || !*name) return;
+  for (int l = 0; l < n; l++)
+    if (strcmp(level[l].name, name) == 0) {
+      chosen = level[l];
+      return;
     }
-    k0 += weyl0;
-    k1 += weyl1;
-  }
-  for (int v = 0; v < VECTORS; v++) {
-    lanes_double x = lanes_unit_interval(c0[v], c1[v]), y = lanes_unit_interval(c2[v], c3[v]);
-    memcpy(u0 + v * WIDTH, &x, sizeof x);
-    memcpy(u1 + v * WIDTH, &y, sizeof y);
-  }
+  die("PHOTONLAB_SIMD=%s: the levels of this machine go from scalar to %s", name,
+      level[n - 1].name);
 }
 
 void rng_fill(struct rng_key key, uint64_t iteration, const uint64_t *path, int n, uint32_t pair,
               double *u0, double *u1) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, choose_level);
   uint64_t all = iteration;
   for (int j = 0; j < n; j++) all |= path[j];
   assert(all >> 48 == 0);
-  int j = 0;
-  for (; j + BLOCK <= n; j += BLOCK) fill_block(key, iteration, path + j, pair, u0 + j, u1 + j);
-  for (; j < n; j++) fill_one(key, iteration, path[j], pair, &u0[j], &u1[j]);
+  int done = chosen.fill(key, iteration, path, n, pair, u0, u1);
+  fill_scalar(key, iteration, path + done, n - done, pair, u0 + done, u1 + done);
 }
 
 // The finaliser of splitmix64 (Steele, Lea, Flood 2014; constants of Stafford's mix 13): a

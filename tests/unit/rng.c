@@ -1,5 +1,6 @@
 // Random numbers: Random123 as the oracle, then what a Monte Carlo estimate depends on.
 #include "numeric/rng.h"
+#include "numeric/rng_level.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -75,26 +76,50 @@ static void expected_pair(struct rng_key key, uint64_t iteration, uint64_t path,
   u[1] = ldexp((double)(((uint64_t)out[3] << 32 | out[2]) >> 11), -53);
 }
 
-static void fill_equals_philox_for_every_length_and_counter(void **state) {
+static void every_level_equals_philox_for_every_length_and_counter(void **state) {
   (void)state;
   enum { MOST = 37 };
   const uint64_t iterations[] = {0, 1, 0xffff, 0x10000, 0x123456789abc, last48};
-  const uint32_t pairs[] = {0, 1, 77, UINT32_MAX};
+  const uint32_t pairs[] = {0, 77, UINT32_MAX};
   struct rng_key key = key_of_test(__func__, 1);
+  struct rng_level level[RNG_MOST_LEVELS];
+  int n_levels = rng_levels(level);
   uint64_t path[MOST];
   for (int j = 0; j < MOST; j++) path[j] = j % 3 ? (0xfedcba987654 >> j) + (uint64_t)j : last48 - j;
-  for (int n = 0; n <= MOST; n++)
-    for (int i = 0; i < 6; i++)
-      for (int p = 0; p < 4; p++) {
-        double u0[MOST + 1], u1[MOST + 1], want[2];
-        u0[n] = u1[n] = 2.385;
-        rng_fill(key, iterations[i], path, n, pairs[p], u0, u1);
-        for (int j = 0; j < n; j++) {
-          expected_pair(key, iterations[i], path[j], pairs[p], want);
-          assert_true(u0[j] == want[0] && u1[j] == want[1]);
+  for (int l = 0; l < n_levels; l++)
+    for (int n = 0; n <= MOST; n++)
+      for (int i = 0; i < 6; i++)
+        for (int p = 0; p < 3; p++) {
+          double u0[MOST + 1], u1[MOST + 1], want[2];
+          for (int j = 0; j <= MOST; j++) u0[j] = u1[j] = 2.385;
+          int done = level[l].fill(key, iterations[i], path, n, pairs[p], u0, u1);
+          assert_in_range(done, n < 16 ? 0 : 16, n);
+          for (int j = 0; j < done; j++) {
+            expected_pair(key, iterations[i], path[j], pairs[p], want);
+            assert_true(u0[j] == want[0] && u1[j] == want[1]);
+          }
+          assert_true(u0[done] == 2.385 && u1[done] == 2.385); // nothing behind the end
         }
-        assert_true(u0[n] == 2.385 && u1[n] == 2.385); // nothing behind the end
-      }
+  print_message("highest level: %s\n", level[n_levels - 1].name);
+}
+
+// The level's blocks and the rest, whatever n.
+static void fill_equals_philox_for_every_length(void **state) {
+  (void)state;
+  enum { MOST = 70 };
+  struct rng_key key = key_of_test(__func__, 1);
+  uint64_t path[MOST];
+  for (int j = 0; j < MOST; j++) path[j] = 977 * (uint64_t)j;
+  for (int n = 0; n < MOST; n++) {
+    double u0[MOST], u1[MOST], want[2];
+    u0[n] = u1[n] = 2.385;
+    rng_fill(key, 12, path, n, 3, u0, u1);
+    for (int j = 0; j < n; j++) {
+      expected_pair(key, 12, path[j], 3, want);
+      assert_true(u0[j] == want[0] && u1[j] == want[1]);
+    }
+    assert_true(u0[n] == 2.385 && u1[n] == 2.385);
+  }
 }
 
 enum { N_PATHS = 4096, N_ITERATIONS = 256, N_SAMPLES = N_PATHS * N_ITERATIONS };
@@ -228,7 +253,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(philox_gives_the_known_answers_of_random123),
       cmocka_unit_test(philox_equals_random123_on_a_million_words),
-      cmocka_unit_test(fill_equals_philox_for_every_length_and_counter),
+      cmocka_unit_test(every_level_equals_philox_for_every_length_and_counter),
+      cmocka_unit_test(fill_equals_philox_for_every_length),
       cmocka_unit_test(numbers_lie_in_the_half_open_interval_on_a_grid_of_53_bits),
       cmocka_unit_test(numbers_are_uniform_in_the_interval_and_in_the_square),
       cmocka_unit_test(streams_differ_and_are_uncorrelated),
