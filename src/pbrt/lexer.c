@@ -40,6 +40,8 @@ static void skip_space_and_comments(struct lexer *lexer) {
   }
 }
 
+static bool is_escapable(char c) { return c == '"' || c == '\\' || c == '\''; }
+
 static struct place place_here(const struct lexer *lexer) {
   return (struct place){lexer->file, lexer->line, (int)(lexer->at - lexer->line_start) + 1};
 }
@@ -48,13 +50,14 @@ static bool scan_string(struct lexer *lexer) {
   struct token *token = &lexer->token;
   const char *open = lexer->at++;
   for (; lexer->at < lexer->end && *lexer->at != '"'; lexer->at++) {
-    if (*lexer->at == '\n') break;
-    if (is_control(*lexer->at) && *lexer->at != '\t' && *lexer->at != '\r')
+    if (*lexer->at == '\n' || *lexer->at == '\r') break;
+    if (is_control(*lexer->at) && *lexer->at != '\t')
       return problem_at(lexer->problem, place_here(lexer), "control character 0x%02x in a string",
                         (unsigned char)*lexer->at);
     if (*lexer->at != '\\') continue;
     lexer->at++;
-    if (lexer->at == lexer->end || !strchr("\"\\'bfnrt", *lexer->at) || !*lexer->at)
+    // pbrt has \n and the like too; without them a string, and a message with it, is one line.
+    if (lexer->at == lexer->end || !is_escapable(*lexer->at))
       return problem_at(lexer->problem, place_here(lexer),
                         "unknown escape in a string; write \\\\ for a backslash");
   }
@@ -112,27 +115,10 @@ bool lexer_advance(struct lexer *lexer) {
   return scan_word_or_number(lexer);
 }
 
-static char escaped(char c) {
-  switch (c) {
-  case 'b':
-    return '\b';
-  case 'f':
-    return '\f';
-  case 'n':
-    return '\n';
-  case 'r':
-    return '\r';
-  case 't':
-    return '\t';
-  default:
-    return c;
-  }
-}
-
 char *lexer_string(const struct token *token, struct arena *arena) {
   char *string = arena_new(arena, char, token->length + 1), *out = string;
   for (const char *at = token->text; at < token->text + token->length; at++)
-    *out++ = *at == '\\' ? escaped(*++at) : *at;
+    *out++ = *at == '\\' ? *++at : *at;
   return string;
 }
 
