@@ -2,11 +2,12 @@
 
 #include <stddef.h>
 
-struct bins bins_new(const double *information, uint64_t n, double enough, struct arena *arena) {
+struct bins bins_new(const double *information, uint64_t first, uint64_t n, double enough,
+                     struct arena *arena) {
   struct bins bins = {.end = arena_new(arena, uint64_t, (ptrdiff_t)n)};
-  uint64_t start = 0;
+  uint64_t start = first;
   double held = 0;
-  for (uint64_t i = 1; i <= n; i++) {
+  for (uint64_t i = first + 1; i <= n; i++) {
     held += information[i - 1];
     if (4 * (i - start) < start || held < enough) continue;
     bins.end[bins.n++] = start = i;

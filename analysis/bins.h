@@ -10,12 +10,13 @@
 
 struct bins {
   int n;
-  uint64_t *end; // bin b holds iterations end[b - 1] + 1 .. end[b]; end[-1] is 0
+  uint64_t *end; // bin b holds iterations end[b - 1] + 1 .. end[b]; end[-1] is `first`
 };
 
-// Each bin is a quarter longer than what came before it, and long enough to have this information
-// (the sum over its iterations).
-struct bins bins_new(const double *information, uint64_t n, double enough, struct arena *);
+// Iterations first + 1 .. n. Each bin is as long as a quarter of what came before it, and long
+// enough to have this information (the sum over its iterations).
+struct bins bins_new(const double *information, uint64_t first, uint64_t n, double enough,
+                     struct arena *);
 
 // Chi-squared of the bins' normal deviates after the directions of the fitted parameters (row b of
 // `direction`) are taken out; `prior` are precisions already known of them (0: none).

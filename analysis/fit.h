@@ -34,6 +34,7 @@ struct fit_row {
   const struct probe *probe;
   enum quantity quantity;
   bool closed_form;
+  uint64_t first; // iteration fitted; the discs of earlier ones touch edges or other surfaces
   double rate_theory, rate, rate_se, rate_lo, rate_hi; // 95 % interval
   double coefficient_theory, coefficient, coefficient_se;
   double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, |b_1| + 1.96 SE

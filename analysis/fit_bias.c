@@ -54,7 +54,7 @@ static bool solve_linear(struct model *model, double rate, struct solution *solu
   family_ratio(&model->theory->family, rate, model->log_ratio, model->slope);
   struct normal_equations eq = begin(model, model->n_columns);
   double total = 0, column[SOLVE_MAX];
-  for (uint64_t j = 0; j < model->theory->n; j++) {
+  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
     columns(model, j, column);
     normal_add(&eq, column, model->difference[j], model->weight[j]);
     total += model->weight[j] * model->difference[j] * model->difference[j];
@@ -148,7 +148,7 @@ static bool interval(struct model *model, const struct scan *scan, double best, 
 static double curvature_se(struct model *model, const struct solution *best) {
   struct normal_equations eq = begin(model, model->n_columns + 1);
   double row[SOLVE_MAX], unused[SOLVE_MAX], covariance[SOLVE_MAX][SOLVE_MAX];
-  for (uint64_t j = 0; j < model->theory->n; j++) {
+  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
     columns(model, j, row);
     row[model->n_columns] = rate_column(model, j, row, best->x);
     normal_add(&eq, row, 0, model->weight[j]);
@@ -181,9 +181,9 @@ static bool find_rate(struct model *model, const struct solution *theory, struct
 
 static struct chi2 lack_of_fit(const struct model *model, const struct solution *at, bool free_rate,
                                struct arena scratch) {
-  uint64_t n = model->theory->n, j = 0;
+  uint64_t n = model->theory->n, j = model->theory->first;
   int parameters = model->n_columns + free_rate;
-  struct bins bins = bins_new(model->weight, n, 0, &scratch);
+  struct bins bins = bins_new(model->weight, model->theory->first, n, 0, &scratch);
   double *deviate = arena_new(&scratch, double, bins.n);
   double(*direction)[SOLVE_MAX] = arena_alloc(&scratch, bins.n, sizeof *direction, alignof(double));
   for (int b = 0; b < bins.n; b++) {
@@ -213,7 +213,8 @@ static void fill_expected(const struct model *model, const struct solution *at, 
   for (uint64_t j = 0; j < model->theory->n; j++) {
     double column[SOLVE_MAX];
     columns(model, j, column);
-    expected[j] = 0;
+    expected[j] = j < model->theory->first ? model->difference[j] : 0;
+    if (j < model->theory->first) continue;
     for (int a = 0; a < model->n_terms; a++) expected[j] += at->x[a] * column[a];
   }
 }

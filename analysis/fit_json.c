@@ -44,6 +44,7 @@ static void set_identity(json_t *object, const struct fit_row *row) {
   set(object, "alpha", number(cell->alpha));
   set(object, "quantity", json_string(quantity_name(row->quantity)));
   set(object, "closed_form", json_boolean(row->closed_form));
+  set(object, "first_iteration", json_integer((json_int_t)row->first));
 }
 
 static json_t *interval_json(double lo, double hi) {

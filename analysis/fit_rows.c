@@ -29,6 +29,7 @@ static struct fit_row *new_row(const struct results *results, const struct serie
       .probe = &results->probe[series->cell][series->probe],
       .quantity = quantity,
       .closed_form = theory->closed_form,
+      .first = theory->first + 1,
       .rate_theory = NAN,
       .rate = NAN,
       .rate_se = NAN,

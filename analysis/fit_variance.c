@@ -43,7 +43,7 @@ static bool evaluate(const struct model *model, const struct point *at, bool fre
   *eq = (struct normal_equations){.n = model->n_coefficients + free_rate};
   *value = 0;
   family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
-  for (uint64_t j = 0; j < model->theory->n; j++) {
+  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
     struct row row = model_row(model, at, j);
     if (!(row.variance > 0)) return false;
     double ratio = model->measured[j] / row.variance, weight = 1 / model->dispersion[j];
@@ -95,7 +95,7 @@ static bool climb(const struct model *model, bool free_rate, struct point *at,
 
 static struct point start(const struct model *model) {
   double sum = 0, weight = 0;
-  for (uint64_t j = 0; j < model->theory->n; j++) {
+  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
     double shape = model->theory->divergent[j];
     if (model->theory->closed_form) shape += model->theory->rest[j];
     sum += model->measured[j] / shape / model->dispersion[j];
@@ -104,9 +104,11 @@ static struct point start(const struct model *model) {
   return (struct point){{sum / weight, 0}, model->theory->family.theory};
 }
 
+// Iterations that are not fitted keep what was measured.
 static void fill_variance(const struct model *model, const struct point *at, double *variance) {
   family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
-  for (uint64_t j = 0; j < model->theory->n; j++) variance[j] = model_row(model, at, j).variance;
+  for (uint64_t j = 0; j < model->theory->n; j++)
+    variance[j] = j < model->theory->first ? model->measured[j] : model_row(model, at, j).variance;
 }
 
 // ---- kurtosis ----
@@ -123,7 +125,7 @@ static double fourth_cumulant(struct moments m) {
 static double kurtosis_scale(const struct prediction *theory, const struct moments *iteration,
                              const double *variance) {
   double sum = 0, shape = 0, runs = iteration[0].n;
-  for (uint64_t j = 0; j < theory->n; j++) {
+  for (uint64_t j = theory->first; j < theory->n; j++) {
     double v2 = variance[j] * variance[j];
     double scatter = moments_variance(iteration[j]) - variance[j];
     sum += runs >= 4 ? fourth_cumulant(iteration[j]) / v2
@@ -152,11 +154,11 @@ static struct chi2 lack_of_fit(const struct model *model, const struct point *at
   int parameters = model->n_coefficients + 1;
   double *information = arena_new(&scratch, double, (ptrdiff_t)n);
   for (uint64_t j = 0; j < n; j++) information[j] = 1 / model->dispersion[j];
-  struct bins bins = bins_new(information, n, enough_information, &scratch);
+  struct bins bins = bins_new(information, model->theory->first, n, enough_information, &scratch);
   double *deviate = arena_new(&scratch, double, bins.n);
   double(*direction)[SOLVE_MAX] = arena_alloc(&scratch, bins.n, sizeof *direction, alignof(double));
   family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
-  uint64_t j = 0;
+  uint64_t j = model->theory->first;
   for (int b = 0; b < bins.n; b++) {
     double held = 0, ratio = 0;
     for (; j < bins.end[b]; j++) {
@@ -195,17 +197,17 @@ static bool fit_coefficient(const struct model *model, struct variance_fit *fit,
   return true;
 }
 
-static bool all_measured(const struct moments *iteration, uint64_t n) {
+static bool all_measured(const struct moments *iteration, uint64_t first, uint64_t n) {
   double sum = 0;
-  for (uint64_t j = 0; j < n; j++) sum += iteration[j].m2;
-  return n > 0 && iteration[0].n >= 2 && sum > 0 && isfinite(sum);
+  for (uint64_t j = first; j < n; j++) sum += iteration[j].m2;
+  return n > first && iteration[0].n >= 2 && sum > 0 && isfinite(sum);
 }
 
 struct variance_fit fit_variance(const struct prediction *theory, const struct moments *iteration,
                                  struct arena *arena) {
   struct variance_fit fit = {0};
   ptrdiff_t n = (ptrdiff_t)theory->n;
-  if (!all_measured(iteration, theory->n)) return fit;
+  if (!all_measured(iteration, theory->first, theory->n)) return fit;
   double runs = iteration[0].n, *measured = arena_new(arena, double, n);
   for (ptrdiff_t j = 0; j < n; j++) measured[j] = moments_variance(iteration[j]);
   fit.variance = arena_new(arena, double, n);
@@ -230,7 +232,7 @@ struct variance_fit fit_variance(const struct prediction *theory, const struct m
   if (!fit_rate(&model, &fit, &best)) return fit;
   fit.lack_of_fit = lack_of_fit(&model, &best, *arena);
   double information = 0;
-  for (ptrdiff_t j = 0; j < n; j++) information += 1 / fit.dispersion[j];
+  for (ptrdiff_t j = (ptrdiff_t)theory->first; j < n; j++) information += 1 / fit.dispersion[j];
   fit.null_se = 1 / sqrt(information);
   fit.converged = true;
   return fit;

@@ -1,5 +1,7 @@
 #include "analysis/prediction.h"
 
+#include "analysis/receiver.h"
+
 #include <math.h>
 
 // Excess kurtosis of a mean of `photons` values with these raw moments.
@@ -85,6 +87,16 @@ struct prediction prediction_from_reference(double reference, double reference_s
   };
 }
 
+// The expansion in r^2 stands once the disc is clear of edges and other surfaces.
+static uint64_t first_clear(const struct scene *scene, const struct probe *probe, double radius,
+                            const struct family *family, struct arena scratch) {
+  if (!probe->hit) return 0;
+  double clear = receiver_surroundings(scene, probe->p, probe->n, scratch);
+  uint64_t first = family->n;
+  while (first > 0 && radius * sqrt(family->rho[first - 1]) < clear) first--;
+  return first;
+}
+
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {
@@ -97,6 +109,7 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
   } else {
     p = prediction_from_reference(probe->reference, probe->reference_se, 2, family, arena);
     p.unbiased = !cell->integrator->photons;
+    if (!p.unbiased) p.first = first_clear(scene, probe, cell->radius, family, *arena);
   }
   p.independent = cell->integrator->independent;
   return p;

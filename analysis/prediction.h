@@ -17,8 +17,9 @@
 // bias = b1 bias + b2 bias2, with a, c, b1, b2 to be fitted. Where theory's bias is zero, `bias` is
 // the shape that is looked for.
 struct prediction {
-  int d;      // dimension of the kernel
-  uint64_t n; // iterations
+  int d;          // dimension of the kernel
+  uint64_t n;     // iterations
+  uint64_t first; // those before are not fitted: theory says nothing of their larger discs
   struct family family;
   bool closed_form;
   bool independent; // of each other; else radii follow the photons found, the law holds in

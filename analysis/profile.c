@@ -128,21 +128,27 @@ static struct kernel_rule kernel_rule_new(const struct kernel *kernel) {
   return rule;
 }
 
+// All moments at one squared radius.
+static void kernel_means(const struct kernel_rule *rule, const struct ring_mean *ring,
+                         double centre, double r2, double mean[PROFILE_MOMENTS]) {
+  for (int j = 0; j < PROFILE_MOMENTS; j++) mean[j] = 0;
+  for (int k = 0; k < RULE_NODES; k++) {
+    double density = chebyshev_value(&ring->density, rule->u2[k] * r2);
+    mean[0] += rule->weight[0][k] * (density - centre);
+    for (int j = 1; j < PROFILE_MOMENTS; j++) mean[j] += rule->weight[j][k] * density;
+  }
+}
+
 struct profile profile_new(const struct ring_mean *ring, const struct kernel *kernel,
                            double radius) {
   struct kernel_rule rule = kernel_rule_new(kernel);
-  struct profile profile = {.flux = ring->flux};
-  double centre = chebyshev_value(&ring->density, 0);
-  profile.exact = ring->flux * centre;
+  double hi = radius * radius, centre = chebyshev_value(&ring->density, 0);
+  struct profile profile = {.exact = ring->flux * centre, .flux = ring->flux};
+  double mean[PROFILE_NODES][PROFILE_MOMENTS], value[PROFILE_NODES];
+  for (int m = 0; m < PROFILE_NODES; m++)
+    kernel_means(&rule, ring, centre, chebyshev_node(hi, m), mean[m]);
   for (int j = 0; j < PROFILE_MOMENTS; j++) {
-    double value[PROFILE_NODES], hi = radius * radius;
-    for (int m = 0; m < PROFILE_NODES; m++) {
-      value[m] = 0;
-      for (int k = 0; k < RULE_NODES; k++) {
-        double density = chebyshev_value(&ring->density, rule.u2[k] * chebyshev_node(hi, m));
-        value[m] += rule.weight[j][k] * (j == 0 ? density - centre : density);
-      }
-    }
+    for (int m = 0; m < PROFILE_NODES; m++) value[m] = mean[m][j];
     profile.moment[j] = chebyshev_fit(hi, value);
   }
   return profile;

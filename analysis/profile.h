@@ -30,7 +30,8 @@ bool ring_mean_find(const struct scene *, const struct cell *, const struct prob
 struct profile {
   double exact; // E[Y] as r -> 0
   double flux;
-  struct chebyshev moment[PROFILE_MOMENTS]; // integral psi^j(u) p(x + r u) du in r^2
+  // In r^2: the integral of psi^j(u) p(x + r u) du, for j = 1 less its limit p(x).
+  struct chebyshev moment[PROFILE_MOMENTS];
 };
 struct profile profile_new(const struct ring_mean *, const struct kernel *, double radius);
 

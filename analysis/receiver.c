@@ -41,13 +41,20 @@ static bool disk_in_plane(const struct quadric *disk, const struct plane *plane)
   return true;
 }
 
+static bool triangle_in_plane(const struct scene *scene, const struct shape *shape, uint32_t t,
+                              const struct plane *plane) {
+  const uint32_t *row = scene->triangle[shape->local + t];
+  for (int k = 0; k < 3; k++)
+    if (!plane_contains(plane, vertex(scene, row[k]))) return false;
+  return true;
+}
+
 static bool shape_in_plane(const struct scene *scene, const struct shape *shape,
                            const struct plane *plane) {
   if (!shape->type->flat) return false;
   if (!is_triangles(shape)) return disk_in_plane(&scene->quadric[shape->local], plane);
   for (uint32_t t = 0; t < shape->count; t++)
-    for (int k = 0; k < 3; k++)
-      if (!plane_contains(plane, vertex(scene, scene->triangle[shape->local + t][k]))) return false;
+    if (!triangle_in_plane(scene, shape, t, plane)) return false;
   return true;
 }
 
@@ -120,9 +127,10 @@ static void edges_toggle(struct edges *edges, struct edge edge, struct arena *ar
   *arena_push(arena, edges) = edge;
 }
 
-static void add_triangles(const struct scene *scene, const struct shape *shape, struct edges *edges,
-                          struct arena *arena) {
+static void add_triangles(const struct scene *scene, const struct shape *shape,
+                          const struct plane *plane, struct edges *edges, struct arena *arena) {
   for (uint32_t t = 0; t < shape->count; t++) {
+    if (!triangle_in_plane(scene, shape, t, plane)) continue;
     const uint32_t *row = scene->triangle[shape->local + t];
     for (int k = 0; k < 3; k++) {
       struct edge edge = {vertex(scene, row[k]), vertex(scene, row[(k + 1) % 3])};
@@ -138,13 +146,70 @@ double receiver_clearance(const struct scene *scene, struct vec p, struct vec n,
   double nearest = INFINITY;
   for (uint32_t s = 0; s < scene->n_shapes; s++) {
     const struct shape *shape = &scene->shape[s];
-    if (!shape_in_plane(scene, shape, &plane)) continue;
     if (is_triangles(shape))
-      add_triangles(scene, shape, &edges, &scratch);
-    else
+      add_triangles(scene, shape, &plane, &edges, &scratch);
+    else if (shape_in_plane(scene, shape, &plane))
       nearest = fmin(nearest, disk_clearance(&scene->quadric[shape->local], p));
   }
   for (ptrdiff_t k = 0; k < edges.count; k++)
     nearest = fmin(nearest, segment_distance(p, edges.item[k].a, edges.item[k].b));
+  return nearest;
+}
+
+// ---- what is not in the plane ----
+
+static double triangle_distance(struct vec p, struct vec a, struct vec b, struct vec c) {
+  struct vec ab = vec_sub(b, a), ac = vec_sub(c, a), ap = vec_sub(p, a);
+  struct vec normal = vec_cross(ab, ac);
+  double area2 = vec_dot(normal, normal);
+  double v = vec_dot(vec_cross(ap, ac), normal), w = vec_dot(vec_cross(ab, ap), normal);
+  if (v >= 0 && w >= 0 && v + w <= area2) return fabs(vec_dot(ap, normal)) / sqrt(area2);
+  return fmin(segment_distance(p, a, b),
+              fmin(segment_distance(p, b, c), segment_distance(p, c, a)));
+}
+
+static double triangles_distance(const struct scene *scene, const struct shape *shape,
+                                 const struct plane *plane) {
+  double nearest = INFINITY;
+  for (uint32_t t = 0; t < shape->count; t++) {
+    const uint32_t *row = scene->triangle[shape->local + t];
+    if (triangle_in_plane(scene, shape, t, plane)) continue;
+    struct vec a = vertex(scene, row[0]), b = vertex(scene, row[1]), c = vertex(scene, row[2]);
+    nearest = fmin(nearest, triangle_distance(plane->p, a, b, c));
+  }
+  return nearest;
+}
+
+// A hit's position is rounded to some ulps of what it was computed from.
+static bool on_sphere(const struct quadric *sphere, struct vec p) {
+  double distance = vec_length(transform_point(&sphere->object_from_world, p));
+  return fabs(distance - sphere->radius) <= 0x1p-40 * sphere->radius;
+}
+
+static double box_distance(struct box box, struct vec p) {
+  const double at[3] = {p.x, p.y, p.z};
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double outside = fmax(0, fmax(box.lo[axis] - at[axis], at[axis] - box.hi[axis]));
+    sum += outside * outside;
+  }
+  return sqrt(sum);
+}
+
+static double shape_distance(const struct scene *scene, const struct shape *shape,
+                             const struct plane *plane) {
+  if (is_triangles(shape)) return triangles_distance(scene, shape, plane);
+  const struct quadric *quadric = &scene->quadric[shape->local];
+  if (shape->type->flat ? disk_in_plane(quadric, plane) : on_sphere(quadric, plane->p))
+    return INFINITY;
+  return box_distance(shape->type->bounds(scene, shape, shape->first), plane->p);
+}
+
+double receiver_surroundings(const struct scene *scene, struct vec p, struct vec n,
+                             struct arena scratch) {
+  struct plane plane = {p, n, plane_tolerance(scene)};
+  double nearest = receiver_clearance(scene, p, n, scratch);
+  for (uint32_t s = 0; s < scene->n_shapes; s++)
+    nearest = fmin(nearest, shape_distance(scene, &scene->shape[s], &plane));
   return nearest;
 }

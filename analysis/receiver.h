@@ -16,4 +16,11 @@ bool receiver_is_plane(const struct scene *, struct vec p, struct vec n, uint32_
 // inside. For triangles that only touch along part of an edge it is too small, never too large.
 double receiver_clearance(const struct scene *, struct vec p, struct vec n, struct arena scratch);
 
+// The same, and to anything that is not in the plane: within this distance theory's expansion in
+// r^2 stands, as far as surfaces go. Shadows may still fall there. Boxes stand for curved shapes,
+// too near rather than too far; a sphere p lies on is no obstacle (a ball on it is a disc,
+// theory 1.5).
+double receiver_surroundings(const struct scene *, struct vec p, struct vec n,
+                             struct arena scratch);
+
 #endif
