@@ -194,6 +194,34 @@ static void test_probe_on_the_diagonal(void **state) {
   assert_true(has_closed_form(UNIFORM, cell_of("box", 0.5), probe));
 }
 
+// ---- without closed form ----
+
+static uint64_t first_of(const char *world, double x, double radius, uint64_t n) {
+  struct scene scene = light_scene(world, &arena);
+  struct cell cell = cell_of("box", radius);
+  struct probe probe = probe_at(x, 0);
+  probe.reference = 1, probe.reference_se = 0.01;
+  struct family_table table = family_table_new(cell.law, n, &arena);
+  struct family family = family_new(&table, cell.alpha, &arena);
+  struct prediction theory = prediction_new(&scene, &cell, &probe, &family, &arena);
+  assert_false(theory.closed_form);
+  if (theory.first > 0) assert_true(family.rho[theory.first - 1] * radius * radius >= 0.25);
+  if (theory.first < n) assert_true(family.rho[theory.first] * radius * radius < 0.25);
+  return theory.first;
+}
+
+// A wall at x = 3 and the plane's edge at x = 4: half a unit from either probe.
+static void test_first_clear_iteration(void **state) {
+  (void)state;
+  assert_int_equal(first_of(UNIFORM WALL, 2.5, 0.49, 1000), 0);
+  assert_in_range(first_of(UNIFORM WALL, 2.5, 1, 1000), 50, 150); // rho < 1/4
+  assert_int_equal(first_of(UNIFORM WALL, 2.5, 1, 50), 50);       // none of them
+  assert_in_range(first_of(UNIFORM, 3.5, 1, 1000), 50, 150);
+#define BALL "Translate 2 0 1\nShape \"sphere\" \"float radius\" 0.5\n"
+  // A sphere's box begins sqrt(0.7^2 + 0.5^2) and more away.
+  assert_int_equal(first_of(UNIFORM BALL, 0.8, 0.49, 1000), 0);
+}
+
 int main(void) {
   arena = arena_reserve();
   const struct CMUnitTest tests[] = {
@@ -211,6 +239,8 @@ int main(void) {
       {"a wall takes the closed form away, a patch in the plane does not", test_other_surfaces, 0,
        0, 0},
       {"a probe on a shared diagonal is inside", test_probe_on_the_diagonal, 0, 0, 0},
+      {"without closed form the fit begins where the disc is clear", test_first_clear_iteration, 0,
+       0, 0},
   };
   return cmocka_run_group_tests_name("predict", tests, NULL, NULL);
 }
