@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // getpid, fileno, fsync
+#define _GNU_SOURCE // getpid, fileno
 #include "base/file.h"
 
 #include <errno.h>
@@ -66,7 +66,7 @@ bool file_begin(struct file_out *out, const char *path, struct problem *problem)
 }
 
 bool file_commit(struct file_out *out, struct problem *problem) {
-  bool ok = fflush(out->stream) == 0 && !ferror(out->stream) && fsync(fileno(out->stream)) == 0;
+  bool ok = fflush(out->stream) == 0 && !ferror(out->stream);
   int why = errno;
   if (fclose(out->stream) != 0) ok = false;
   out->stream = NULL;

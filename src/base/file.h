@@ -21,7 +21,9 @@ bool file_exists(const char *path);
 // mkdir -p.
 bool file_make_directory(const char *path, struct problem *);
 
-// Write to a temporary name beside the final one, then rename. Usage:
+// Write to a temporary name beside the final one, then rename: a killed program leaves no half of a
+// file. No fsync, which costs a second a file on a busy disk: what a power cut could damage is cheap
+// to make again, or carries a checksum (blocks of runs). Usage:
 //   if (!file_begin(&out, path, problem)) return false;
 //   fprintf(out.stream, ...);
 //   return file_commit(&out, problem);
