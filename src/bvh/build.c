@@ -1,8 +1,9 @@
 // Binned SAH (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
-// Cost of a split, in triangle tests: NODE_COST + (area_left n_left + area_right n_right) / area,
-// where NODE_COST is the work of testing two boxes. A range that may be a leaf becomes one if
-// testing its n primitives is not dearer. Deterministic: one thread, sums in a fixed order, the
-// first of equal splits (lowest axis and bin).
+// The unit of cost is the test of a block of LANES triangles, whether full or not. A node, two
+// boxes, costs NODE_COST, so a split costs NODE_COST + (area_left blocks_left + area_right
+// blocks_right) / area. A range that may be a leaf becomes one if that is not dearer.
+// Deterministic: one thread, sums in a fixed order, the first of equal splits (lowest axis and
+// bin).
 #include "bvh/tree.h"
 
 #include "scene/shape/triangle.h"
@@ -15,7 +16,7 @@ enum {
   LEAF_SIZE = 4,
   FLAT_SIZE = 8, // so few primitives are one leaf: no tree
 };
-static const double NODE_COST = 1.0;
+static const double NODE_COST = 0.5;
 
 struct build {
   const struct scene *scene;
@@ -24,10 +25,19 @@ struct build {
   const struct box *box; // by primitive
   uint32_t *order;       // primitives; a range of it is a subtree
   uint32_t leaf_size;
+  bool flat; // no tree
   struct {
     struct bvh_node *item;
     ptrdiff_t count, capacity;
   } nodes;
+  struct {
+    struct bvh_block *item;
+    ptrdiff_t count, capacity;
+  } blocks;
+  struct {
+    struct bvh_other *item;
+    ptrdiff_t count, capacity;
+  } others;
 };
 
 struct range {
@@ -56,6 +66,8 @@ static double box_area(const struct box *box) {
   for (int k = 0; k < 3; k++) side[k] = (double)box->hi[k] - (double)box->lo[k];
   return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
+
+static uint32_t blocks_of(uint32_t count) { return count / LANES + (count % LANES != 0); }
 
 static struct box range_box(const struct build *b, uint32_t first, uint32_t count) {
   struct box box = EMPTY;
@@ -97,13 +109,13 @@ static void bins_best(const struct bins *bins, struct split *split) {
   for (int i = 0; i < N_BINS - 1; i++) {
     if (bins->count[i]) box_add(&box, &bins->box[i]);
     count += bins->count[i];
-    left_cost[i + 1] = count ? box_area(&box) * count : INFINITY;
+    left_cost[i + 1] = count ? box_area(&box) * blocks_of(count) : INFINITY;
   }
   box = EMPTY, count = 0;
   for (int i = N_BINS - 1; i > 0; i--) {
     if (bins->count[i]) box_add(&box, &bins->box[i]);
     count += bins->count[i];
-    double cost = count ? left_cost[i] + box_area(&box) * count : INFINITY;
+    double cost = count ? left_cost[i] + box_area(&box) * blocks_of(count) : INFINITY;
     if (cost <= split->cost) split->cost = cost, split->bin = i;
   }
 }
@@ -144,26 +156,72 @@ static uint32_t partition(struct build *b, const struct range *range, const stru
   return left;
 }
 
-static bool is_triangle(const struct scene *scene, uint32_t primitive) {
-  return scene->shape[scene->shape_of[primitive]].type->intersect == triangle_intersect;
+static const struct shape *shape_of(const struct build *b, uint32_t primitive) {
+  return &b->scene->shape[b->scene->shape_of[primitive]];
+}
+
+static bool is_triangle(const struct build *b, uint32_t primitive) {
+  return shape_of(b, primitive)->type->intersect == triangle_intersect;
+}
+
+// Moves the triangles to the front; their number.
+static uint32_t partition_triangles(struct build *b, const struct range *range) {
+  uint32_t *order = b->order + range->first, left = 0;
+  for (uint32_t i = 0; i < range->count; i++) {
+    uint32_t primitive = order[i];
+    if (!is_triangle(b, primitive)) continue;
+    order[i] = order[left];
+    order[left++] = primitive;
+  }
+  return left;
+}
+
+static void block_set(const struct build *b, struct bvh_block *block, int lane,
+                      uint32_t primitive) {
+  float vertex[3][3];
+  triangle_gather(b->scene, shape_of(b, primitive), primitive, vertex);
+  struct vec n = triangle_cross(vertex);
+  block->n[0][lane] = n.x, block->n[1][lane] = n.y, block->n[2][lane] = n.z;
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) block->vertex[i][k][lane] = vertex[i][k];
+  block->primitive[lane] = primitive;
+}
+
+static struct bvh_child child_new(ptrdiff_t first, uint32_t count, enum bvh_kind kind) {
+  assert(first <= UINT32_MAX && count <= BVH_MAX_COUNT);
+  return (struct bvh_child){(uint32_t)first, count & BVH_MAX_COUNT, kind};
+}
+
+static struct bvh_child blocks_new(struct build *b, const uint32_t *primitive, uint32_t count) {
+  static const struct bvh_block nothing = {.vertex = {{{NAN, NAN}}},
+                                           .primitive = {PRIMITIVE_NONE, PRIMITIVE_NONE}};
+  struct bvh_child leaf = child_new(b->blocks.count, blocks_of(count), BVH_TRIANGLES);
+  for (uint32_t i = 0; i < count; i += LANES) {
+    struct bvh_block *block = arena_push(b->scratch, &b->blocks);
+    *block = nothing;
+    for (uint32_t j = i; j < count && j < i + LANES; j++)
+      block_set(b, block, (int)(j - i), primitive[j]);
+  }
+  return leaf;
+}
+
+static struct bvh_child others_new(struct build *b, const uint32_t *primitive, uint32_t count) {
+  struct bvh_child leaf = child_new(b->others.count, count, BVH_OTHERS);
+  for (uint32_t i = 0; i < count; i++) {
+    struct bvh_other *other = arena_push(b->scratch, &b->others);
+    *other = (struct bvh_other){b->box[primitive[i]], primitive[i]};
+  }
+  return leaf;
 }
 
 static struct bvh_child leaf_new(struct build *b, const struct range *range) {
-  struct bvh_child leaf = {range->first, range->count, BVH_TRIANGLES};
-  for (uint32_t i = range->first; i < range->first + range->count; i++) {
-    struct bvh_item *item = &b->bvh->item[i];
-    item->primitive = b->order[i];
-    const struct shape *shape = &b->scene->shape[b->scene->shape_of[item->primitive]];
-    if (is_triangle(b->scene, item->primitive))
-      triangle_gather(b->scene, shape, item->primitive, item->vertex);
-    else
-      leaf.kind = BVH_MIXED;
-  }
   struct bvh_statistics *s = &b->bvh->statistics;
   s->leaves++;
   s->depth = range->depth > s->depth ? range->depth : s->depth;
-  if (range->count) s->sah_cost += box_area(&range->box) * range->count;
-  return leaf;
+  if (range->count) s->sah_cost += box_area(&range->box) * blocks_of(range->count);
+  const uint32_t *primitive = b->order + range->first;
+  if (range->count && !is_triangle(b, *primitive)) return others_new(b, primitive, range->count);
+  return blocks_new(b, primitive, range->count);
 }
 
 static void node_set(struct bvh_node *node, int side, struct bvh_child child,
@@ -175,22 +233,28 @@ static void node_set(struct bvh_node *node, int side, struct bvh_child child,
   }
 }
 
-// How many of the range go left; 0: the range is a leaf.
-static uint32_t range_divide(struct build *b, const struct range *range) {
-  bool may_be_leaf = range->count <= b->leaf_size;
-  if (range->count == 1) return 0;
-  if (range->depth >= BVH_SAH_DEPTH) return may_be_leaf ? 0 : range->count / 2;
-  struct split split = split_best(b, range);
+static bool splits_pay(const struct range *range, const struct split *split) {
   double area = box_area(&range->box);
-  if (may_be_leaf && !(NODE_COST * area + split.cost < area * range->count)) return 0;
-  if (!(split.cost < INFINITY)) return range->count / 2; // one centre, or no finite area
-  return partition(b, range, &split);
+  return NODE_COST * area + split->cost < area * blocks_of(range->count);
+}
+
+// Divides the range in two; the size of the first part, or 0: it is a leaf. A leaf has one kind of
+// primitive.
+static uint32_t range_divide(struct build *b, const struct range *range) {
+  if (range->count <= 1) return 0;
+  if (b->flat) return partition_triangles(b, range) % range->count;
+  bool may_be_leaf = range->count <= b->leaf_size, by_sah = range->depth < BVH_SAH_DEPTH;
+  struct split split = by_sah ? split_best(b, range) : (struct split){.cost = INFINITY};
+  if (may_be_leaf && !splits_pay(range, &split))
+    return partition_triangles(b, range) % range->count;
+  if (split.cost < INFINITY) return partition(b, range, &split);
+  return range->count / 2; // all centres are one, or deep enough
 }
 
 static struct bvh_child range_build(struct build *b, const struct range *range) {
   uint32_t left = range_divide(b, range);
   if (left == 0) return leaf_new(b, range);
-  uint32_t number = (uint32_t)b->nodes.count;
+  ptrdiff_t number = b->nodes.count;
   (void)arena_push(b->scratch, &b->nodes);
   b->bvh->statistics.sah_cost += box_area(&range->box) * NODE_COST;
   const uint32_t start[3] = {range->first, range->first + left, range->first + range->count};
@@ -201,15 +265,15 @@ static struct bvh_child range_build(struct build *b, const struct range *range) 
     struct bvh_child child = range_build(b, &half);
     node_set(&b->nodes.item[number], side, child, &half.box);
   }
-  return (struct bvh_child){.first = number, .kind = BVH_NODE};
+  return child_new(number, 0, BVH_NODE);
 }
 
 static void build_root(struct build *b) {
   uint32_t n = b->scene->n_primitives;
   struct range all = {.count = n, .box = range_box(b, 0, n)};
-  bool flat = n == 0 || n <= (b->leaf_size ? b->leaf_size : FLAT_SIZE);
+  b->flat = n <= (b->leaf_size ? b->leaf_size : FLAT_SIZE);
   if (b->leaf_size == 0) b->leaf_size = LEAF_SIZE;
-  b->bvh->root = flat ? leaf_new(b, &all) : range_build(b, &all);
+  b->bvh->root = range_build(b, &all);
   if (n) b->bvh->statistics.sah_cost /= box_area(&all.box);
 }
 
@@ -225,23 +289,30 @@ static void build_inputs(struct build *b) {
   b->box = box;
 }
 
+// A copy of what the scratch holds; nothing may be NULL.
+static void *keep(struct arena *arena, const void *item, ptrdiff_t count, ptrdiff_t size) {
+  void *copy = arena_alloc(arena, count, size, BVH_LINE);
+  if (count) memcpy(copy, item, (size_t)(count * size));
+  return copy;
+}
+
 struct bvh *bvh_build(const struct scene *scene, struct bvh_options options, struct arena *arena) {
   assert(options.leaf_size >= 0);
   struct arena reserve = arena_reserve(), scratch = reserve;
   struct bvh *bvh = arena_new(arena, struct bvh, 1);
-  bvh->scene = scene;
-  bvh->item = arena_new(arena, struct bvh_item, scene->n_primitives);
   struct build b = {
       .scene = scene, .bvh = bvh, .scratch = &scratch, .leaf_size = (uint32_t)options.leaf_size};
   build_inputs(&b);
   build_root(&b);
-  bvh->node = arena_new(arena, struct bvh_node, b.nodes.count);
-  if (b.nodes.count) memcpy(bvh->node, b.nodes.item, (size_t)b.nodes.count * sizeof *b.nodes.item);
+  const ptrdiff_t node = sizeof(struct bvh_node), block = sizeof(struct bvh_block),
+                  other = sizeof(struct bvh_other);
+  bvh->scene = scene;
+  bvh->node = keep(arena, b.nodes.item, b.nodes.count, node);
+  bvh->block = keep(arena, b.blocks.item, b.blocks.count, block);
+  bvh->other = keep(arena, b.others.item, b.others.count, other);
+  double bytes = (double)(b.nodes.count * node + b.blocks.count * block + b.others.count * other);
   bvh->statistics.nodes = (uint32_t)b.nodes.count;
-  if (scene->n_primitives)
-    bvh->statistics.bytes_per_primitive =
-        (double)sizeof(struct bvh_item) +
-        (double)b.nodes.count * (double)sizeof(struct bvh_node) / scene->n_primitives;
+  bvh->statistics.bytes_per_primitive = scene->n_primitives ? bytes / scene->n_primitives : 0;
   arena_release(reserve);
   return bvh;
 }

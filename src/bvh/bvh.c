@@ -1,11 +1,11 @@
 // Traversal: near child first, the other one waits on the stack. Exactness is argued in
 // scene/shape/clip.h: a box is skipped only if its clip is empty or begins beyond the closest t.
+// What is done here to two triangles or two boxes at a time is what triangle.h and clip.h do to
+// one.
 #include "bvh/tree.h"
 
 #include "scene/shape/sphere.h"
 #include "scene/shape/triangle.h"
-
-#include <string.h>
 
 // A ray under way.
 struct search {
@@ -21,35 +21,98 @@ static inline void search_keep(struct search *s, double t, uint32_t primitive) {
     s->best = (struct hit){t, primitive};
 }
 
-static inline void search_triangle(struct search *s, const struct bvh_item *item) {
-  double t;
-  if (!triangle_accepts(&s->shear, item->vertex) || item->primitive == s->ray->leaving) return;
-  if (triangle_distance(&s->cone, s->ray, item->vertex, &t)) search_keep(s, t, item->primitive);
+// ---- triangles ----
+// triangle_accepts
+static inline lanes_mask block_accepts(const struct shear *s, const struct bvh_block *block) {
+  lanes x[3], y[3];
+  for (int i = 0; i < 3; i++) {
+    lanes z = lanes_from(block->vertex[i][s->z]) - s->o[s->z];
+    x[i] = (lanes_from(block->vertex[i][s->x]) - s->o[s->x]) - s->along_x * z;
+    y[i] = (lanes_from(block->vertex[i][s->y]) - s->o[s->y]) - s->along_y * z;
+  }
+  lanes e0 = x[1] * y[2] - y[1] * x[2];
+  lanes e1 = x[2] * y[0] - y[2] * x[0];
+  lanes e2 = x[0] * y[1] - y[0] * x[1];
+  return ((e0 >= 0) & (e1 >= 0) & (e2 >= 0)) | ((e0 <= 0) & (e1 <= 0) & (e2 <= 0));
 }
 
-static void search_mixed(struct search *s, const struct bvh_item *item) {
+// triangle_plane
+static inline lanes block_plane(const struct ray *ray, const struct bvh_block *block) {
+  const lanes *n = block->n;
+  lanes x = lanes_from(block->vertex[0][0]) - ray->o.x;
+  lanes y = lanes_from(block->vertex[0][1]) - ray->o.y;
+  lanes z = lanes_from(block->vertex[0][2]) - ray->o.z;
+  return (n[0] * x + n[1] * y + n[2] * z) / (n[0] * ray->d.x + n[1] * ray->d.y + n[2] * ray->d.z);
+}
+
+static inline struct box block_box(const struct bvh_block *block, int lane) {
+  float vertex[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) vertex[i][k] = block->vertex[i][k][lane];
+  return triangle_box(vertex);
+}
+
+static inline void search_block(struct search *s, const struct bvh_block *block) {
+  lanes_mask accepted = block_accepts(&s->shear, block);
+  if (!lanes_bits(accepted)) return;
+  lanes t = block_plane(s->ray, block);
+  unsigned bits = lanes_bits(accepted & (t > 0) & (t < INFINITY));
+  for (int lane = 0; bits; lane++, bits >>= 1) {
+    if (!(bits & 1) || block->primitive[lane] == s->ray->leaving) continue;
+    struct box box = block_box(block, lane);
+    double t_lane = t[lane];
+    if (clip_accept(&s->cone, &box, s->ray->t_max, &t_lane))
+      search_keep(s, t_lane, block->primitive[lane]);
+  }
+}
+
+// ---- others ----
+static bool other_hit(const struct search *s, const struct bvh_other *other, double *t) {
   const struct scene *scene = s->bvh->scene;
-  const struct shape *shape = &scene->shape[scene->shape_of[item->primitive]];
+  const struct shape *shape = &scene->shape[scene->shape_of[other->primitive]];
+  bool leaving = s->ray->leaving == other->primitive;
+  if (shape->type->intersect == sphere_intersect)
+    return sphere_hit(shape_quadric(scene, shape, other->primitive), &other->box, &s->cone, s->ray,
+                      leaving, t);
+  if (shape->type->intersect == disk_intersect)
+    return !leaving && disk_hit(shape_quadric(scene, shape, other->primitive), &other->box,
+                                &s->cone, s->ray, t);
+  return shape->type->intersect(scene, shape, other->primitive, s->ray, t);
+}
+
+static void search_other(struct search *s, const struct bvh_other *other) {
   double t;
-  if (shape->type->intersect(scene, shape, item->primitive, s->ray, &t))
-    search_keep(s, t, item->primitive);
+  if (other_hit(s, other, &t)) search_keep(s, t, other->primitive);
 }
 
 static inline void search_leaf(struct search *s, struct bvh_child leaf) {
-  const struct bvh_item *item = &s->bvh->item[leaf.first], *end = item + leaf.count;
   if (leaf.kind == BVH_TRIANGLES)
-    for (; item < end; item++) search_triangle(s, item);
+    for (uint32_t i = 0; i < leaf.count; i++) search_block(s, &s->bvh->block[leaf.first + i]);
   else
-    for (; item < end; item++) search_mixed(s, item);
+    for (uint32_t i = 0; i < leaf.count; i++) search_other(s, &s->bvh->other[leaf.first + i]);
 }
 
-static inline bool search_clip(const struct search *s, const struct bvh_node *node, int side,
-                               double *t0) {
-  struct box box;
-  double t1;
-  for (int k = 0; k < 3; k++)
-    box.lo[k] = node->face[0][k][side], box.hi[k] = node->face[1][k][side];
-  return cone_clip(&s->cone, &box, t0, &t1) && *t0 <= s->best.t;
+// ---- nodes ----
+// cone_clip of both children. t0: where their clips begin, INFINITY where there is nothing to find.
+// `parallel`: whether any axis is.
+static inline lanes node_clip(const struct search *s, const struct bvh_node *node, bool parallel) {
+  const struct cone *cone = &s->cone;
+  lanes near = {0, 0}, far = {INFINITY, INFINITY};
+  for (int k = 0; k < 3; k++) {
+    int enter = cone->backward[k];
+    lanes first = lanes_from(node->face[enter][k]) - cone->o[k];
+    lanes last = lanes_from(node->face[1 - enter][k]) - cone->o[k];
+    if (parallel && cone->parallel[k]) {
+      lanes outside = enter ? lanes_max(last, -first) : lanes_max(first, -last);
+      near = lanes_max(outside * cone->near_scale[k], near);
+    } else {
+      near = lanes_max(first * cone->near_scale[k], near);
+      far = lanes_min(last * cone->far_scale[k], far);
+    }
+  }
+  lanes limit = lanes_min(lanes_set(s->best.t), far);
+  return (lanes){near[0] <= limit[0] ? near[0] : INFINITY,
+                 near[1] <= limit[1] ? near[1] : INFINITY};
 }
 
 struct waiting {
@@ -57,18 +120,17 @@ struct waiting {
   double t0;
 };
 
-static inline void search_tree(struct search *s, bool any) {
+static inline void search_tree(struct search *s, bool any, bool parallel) {
   struct waiting stack[BVH_MAX_DEPTH];
   int n = 0;
   struct bvh_child child = s->bvh->root;
   for (;;) {
     if (child.kind == BVH_NODE) {
       const struct bvh_node *node = &s->bvh->node[child.first];
-      double t0[2];
-      bool in0 = search_clip(s, node, 0, &t0[0]), in1 = search_clip(s, node, 1, &t0[1]);
-      if (in0 || in1) {
-        int near = !in0 || (in1 && t0[1] < t0[0]);
-        if (in0 && in1) stack[n++] = (struct waiting){node->child[1 - near], t0[1 - near]};
+      lanes t0 = node_clip(s, node, parallel);
+      int near = t0[1] < t0[0], far = 1 - near;
+      if (t0[near] < INFINITY) {
+        if (t0[far] < INFINITY) stack[n++] = (struct waiting){node->child[far], t0[far]};
         child = node->child[near];
         continue;
       }
@@ -83,23 +145,23 @@ static inline void search_tree(struct search *s, bool any) {
   }
 }
 
-static inline struct search search_new(const struct bvh *bvh, const struct ray *ray) {
-  return (struct search){bvh, ray, cone_of(ray), shear_of(ray), {ray->t_max, PRIMITIVE_NONE}};
+static struct hit search_run(const struct bvh *bvh, const struct ray *ray, bool any) {
+  struct search search = {bvh, ray, cone_of(ray), shear_of(ray), {ray->t_max, PRIMITIVE_NONE}};
+  if (search.cone.any_parallel)
+    search_tree(&search, any, true);
+  else
+    search_tree(&search, any, false);
+  return search.best;
 }
 
 void bvh_closest(const struct bvh *bvh, const struct ray *rays, struct hit *hits, int n) {
   for (int j = 0; j < n; j++) {
-    struct search search = search_new(bvh, &rays[j]);
-    search_tree(&search, false);
-    hits[j] = search.best;
+    hits[j] = search_run(bvh, &rays[j], false);
     if (hits[j].primitive == PRIMITIVE_NONE) hits[j].t = INFINITY;
   }
 }
 
 void bvh_any(const struct bvh *bvh, const struct ray *rays, unsigned char *blocked, int n) {
-  for (int j = 0; j < n; j++) {
-    struct search search = search_new(bvh, &rays[j]);
-    search_tree(&search, true);
-    blocked[j] = search.best.primitive != PRIMITIVE_NONE;
-  }
+  for (int j = 0; j < n; j++)
+    blocked[j] = search_run(bvh, &rays[j], true).primitive != PRIMITIVE_NONE;
 }

@@ -3,35 +3,49 @@
 #define BVH_TREE_H
 
 #include "bvh/bvh.h"
+#include "bvh/lanes.h"
 
 // Every level of the tree leaves at most one child waiting. Below BVH_SAH_DEPTH a range is halved,
-// so the depth is at most BVH_SAH_DEPTH + log2(2^32).
-enum { BVH_SAH_DEPTH = 64, BVH_MAX_DEPTH = BVH_SAH_DEPTH + 32 };
+// and a leaf of several kinds of primitives is divided once more, so the depth is at most
+// BVH_SAH_DEPTH + log2(2^32) + 1.
+enum { BVH_SAH_DEPTH = 64, BVH_MAX_DEPTH = BVH_SAH_DEPTH + 33 };
 
-enum bvh_kind { BVH_NODE, BVH_TRIANGLES, BVH_MIXED }; // mixed: not only triangles
+enum { BVH_LINE = 64 }; // bytes of a cache line, to which the arrays are aligned
+
+#define BVH_MAX_COUNT 0x3fffffffu
+
+enum bvh_kind { BVH_NODE, BVH_TRIANGLES, BVH_OTHERS };
 
 struct bvh_child {
-  uint32_t first; // node, or first item of a leaf
-  uint32_t count; // items of a leaf
-  enum bvh_kind kind;
+  uint32_t first;      // row of node, block or other
+  uint32_t count : 30; // of blocks or others
+  uint32_t kind : 2;   // enum bvh_kind
 };
 
-// The boxes of both children, side by side.
+// The boxes of both children, side by side. One cache line.
 struct bvh_node {
-  float face[2][3][2]; // [lo, hi][axis][child]
+  lanes_float face[2][3]; // [lo, hi][axis]
   struct bvh_child child[2];
 };
 
-// A primitive of a leaf. Only triangles have vertices.
-struct bvh_item {
-  float vertex[3][3];
+// Triangles of a leaf, side by side. Lanes without one hold NaN vertices: nothing accepts them.
+struct bvh_block {
+  lanes n[3];               // triangle_cross of the vertices
+  lanes_float vertex[3][3]; // [corner][axis]
+  uint32_t primitive[LANES];
+};
+
+// A sphere, disk, or a shape the tree knows only by its row.
+struct bvh_other {
+  struct box box;
   uint32_t primitive;
 };
 
 struct bvh {
   const struct scene *scene;
   struct bvh_node *node;
-  struct bvh_item *item;
+  struct bvh_block *block;
+  struct bvh_other *other;
   struct bvh_child root;
   struct bvh_statistics statistics;
 };

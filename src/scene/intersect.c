@@ -10,8 +10,11 @@ bool triangle_intersect(const struct scene *scene, const struct shape *shape, ui
   float vertex[3][3];
   triangle_gather(scene, shape, primitive, vertex);
   struct shear shear = shear_of(ray);
+  if (!triangle_accepts(&shear, vertex)) return false;
   struct cone cone = cone_of(ray);
-  return triangle_accepts(&shear, vertex) && triangle_distance(&cone, ray, vertex, t);
+  struct box box = triangle_box(vertex);
+  *t = triangle_plane(ray, vertex);
+  return clip_accept(&cone, &box, ray->t_max, t);
 }
 
 bool disk_intersect(const struct scene *scene, const struct shape *shape, uint32_t primitive,

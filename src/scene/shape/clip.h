@@ -67,11 +67,12 @@ static inline bool cone_clip(const struct cone *cone, const struct box *box, dou
   return near <= far;
 }
 
-// The t of a primitive from the t of its surface: a hit if it lies ahead and within t_max.
+// The t of a primitive from the t of its surface: a hit if it lies ahead and within t_max. A t that
+// is not finite is none.
 static inline bool clip_accept(const struct cone *cone, const struct box *box, double t_max,
                                double *t) {
   double t0, t1;
-  if (!(*t > 0) || !cone_clip(cone, box, &t0, &t1)) return false;
+  if (!(*t > 0 && *t < INFINITY) || !cone_clip(cone, box, &t0, &t1)) return false;
   if (*t < t0) *t = t0;
   if (*t > t1) *t = t1;
   return *t > 0 && *t < t_max;

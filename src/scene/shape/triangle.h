@@ -61,17 +61,11 @@ static inline struct box triangle_box(const float vertex[3][3]) {
   return box;
 }
 
-// t of an accepted triangle, from its plane. A triangle seen edge-on or without area is never hit:
-// there n . d == 0 and t is not finite (clip_accept rejects NaN, its clip clamps no infinity).
-static inline bool triangle_distance(const struct cone *cone, const struct ray *ray,
-                                     const float vertex[3][3], double *t) {
+// t of the ray in the triangle's plane. Without area or seen edge-on n . d == 0, and t is not
+// finite.
+static inline double triangle_plane(const struct ray *ray, const float vertex[3][3]) {
   struct vec n = triangle_cross(vertex);
-  double facing = vec_dot(n, ray->d);
-  if (facing == 0) return false;
-  *t = vec_dot(n, vec_sub(triangle_vertex(vertex[0]), ray->o)) / facing;
-  if (!(*t < INFINITY)) return false;
-  struct box box = triangle_box(vertex);
-  return clip_accept(cone, &box, ray->t_max, t);
+  return vec_dot(n, vec_sub(triangle_vertex(vertex[0]), ray->o)) / vec_dot(n, ray->d);
 }
 
 // The vertices of a primitive.
