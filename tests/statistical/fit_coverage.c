@@ -38,9 +38,10 @@ static void count_row(struct tally *tally, const struct fit_row *row) {
 // tally[0]: variance, tally[1]: bias. Verdicts are those of whole runs.
 static int study(const struct synthetic *s, struct tally tally[2]) {
   int disagree = 0;
+  struct prediction theory = synthetic_prediction(s, &arena);
   for (uint64_t e = 1; e <= EXPERIMENTS; e++) {
     struct arena scratch = arena;
-    struct fit fit = synthetic_fit(s, e, &scratch);
+    struct fit fit = synthetic_fit_with(s, &theory, e, &scratch);
     for (int r = 0; r < fit.n_rows; r++) count_row(&tally[r], &fit.row[r]);
     disagree += fit.verdict == VERDICT_DISAGREE;
   }

@@ -81,13 +81,13 @@ static inline struct ring_mean synthetic_ring(const struct synthetic *s) {
 }
 
 // The law is Knaus and Zwicker's, the kernel the box.
-static inline struct prediction synthetic_prediction(const struct synthetic *s, double truth,
+static inline struct prediction synthetic_prediction(const struct synthetic *s,
                                                      struct arena *arena) {
   struct family_table *table = arena_new(arena, struct family_table, 1);
   *table = family_table_new(law_find("knaus-zwicker"), s->iterations, arena);
   struct family *family = arena_new(arena, struct family, 1);
   *family = family_new(table, s->alpha, arena);
-  if (!s->closed_form) return prediction_from_reference(truth, s->reference_se, 2, family, arena);
+  if (!s->closed_form) return prediction_from_reference(1, s->reference_se, 2, family, arena);
   struct ring_mean ring = synthetic_ring(s);
   struct profile profile = profile_new(&ring, kernel_find("box"), 1);
   return prediction_from_profile(&profile, 1, 1e9, 0, family, arena);
@@ -117,13 +117,14 @@ static inline struct series synthetic_series(const struct synthetic *s, const do
   return series;
 }
 
-// One cell at one probe, fitted.
-static inline struct fit synthetic_fit(const struct synthetic *s, uint64_t experiment,
-                                       struct arena *arena) {
+// One cell at one probe, fitted. The prediction is the same for all experiments but for the truth.
+static inline struct fit synthetic_fit_with(const struct synthetic *s,
+                                            const struct prediction *theory, uint64_t experiment,
+                                            struct arena *arena) {
   struct stream off = {rng_key(rng_hash_name(s->name) + experiment, 0, RNG_REFERENCE), 0};
-  double truth = 1 + (s->reference_se > 0 ? s->reference_se * stream_normal(&off) : 0);
   struct prediction *prediction = arena_new(arena, struct prediction, 1);
-  *prediction = synthetic_prediction(s, truth, arena);
+  *prediction = *theory;
+  if (s->reference_se > 0) prediction->truth = 1 + s->reference_se * stream_normal(&off);
   struct results *results = arena_new(arena, struct results, 1);
   struct cell *cell = arena_new(arena, struct cell, 1);
   *cell = (struct cell){.scene = "synthetic",
@@ -147,6 +148,12 @@ static inline struct fit synthetic_fit(const struct synthetic *s, uint64_t exper
   struct fit fit;
   fit_predicted(results, prediction, arena, &fit);
   return fit;
+}
+
+static inline struct fit synthetic_fit(const struct synthetic *s, uint64_t experiment,
+                                       struct arena *arena) {
+  struct prediction theory = synthetic_prediction(s, arena);
+  return synthetic_fit_with(s, &theory, experiment, arena);
 }
 
 static inline const struct fit_test *synthetic_test(const struct fit_row *row, const char *name) {
