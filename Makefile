@@ -165,8 +165,7 @@ test-programs: $(test_programs)
 test: $(binary) $(test_programs)
 	@PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(test_programs) $(cli_tests)
 
-# Sanitizers make a program slow: a tenth of the samples. The statistical tests keep their level.
-sanitized = PHOTONLAB_TEST_SAMPLES=0.1 tests/run $(test_sources:tests/%.c=build/$1/tests/%)
+sanitized = TIME_LIMIT_S=900 tests/run $(test_sources:tests/%.c=build/$1/tests/%)
 test-asan:
 	@$(MAKE) BUILD=asan test-programs
 	@$(call sanitized,asan)
