@@ -41,9 +41,9 @@ static double cosine_of(struct pair r) {
 }
 
 // Of k quarter turns and r more, |r| <= pi/4 (a rounding more does no harm).
-static void sincos_quarter(double k, struct pair r, double *sine, double *cosine) {
+static void sincos_quarter(int k, struct pair r, double *sine, double *cosine) {
   double s = sine_of(r), c = cosine_of(r);
-  int quarter = (int)(k - 4 * floor(0.25 * k));
+  int quarter = k & 3;
   *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
   *cosine = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
 }
@@ -54,8 +54,8 @@ void num_sincos(double x, double *sine, double *cosine) {
     *sine = *cosine = x;
     return;
   }
-  double k = floor(x * 0x1.45f306dc9c883p-1 + 0.5);            // 2 / pi
-  struct pair r = pair_sum(x - k * HALF_PI_1, -k * HALF_PI_2); // the difference is exact
+  int k = (int)(x * 0x1.45f306dc9c883p-1 + (x < 0 ? -0.5 : 0.5)); // 2 / pi
+  struct pair r = pair_sum(x - k * HALF_PI_1, -k * HALF_PI_2);    // the difference is exact
   struct pair rest = pair_sum(r.hi, -k * HALF_PI_3);
   sincos_quarter(k, pair_quick_sum(rest.hi, rest.lo + r.lo), sine, cosine);
 }
@@ -67,8 +67,9 @@ void num_sincos_turns(double u, double *sine, double *cosine) {
     return;
   }
   // Of |u|, so that every difference is exact; 4 u + 1/2 would round.
-  double a = u < 0 ? -u : u, k = floor(4 * a);
-  if (4 * a - k > 0.5) k += 1;
+  double a = u < 0 ? -u : u;
+  int k = (int)(4 * a);
+  if (4 * a - k > 0.5) k++;
   sincos_quarter(k, pair_scale(two_pi, a - 0.25 * k), sine, cosine);
   if (u < 0) *sine = -*sine;
 }

@@ -48,11 +48,12 @@ static double exp_pair(struct pair x) {
   if (x.hi != x.hi) return x.hi;
   if (x.hi > 710) return INFINITY;
   if (x.hi < -746) return 0;
-  double k = floor(x.hi * (1 / (LN2_HI + LN2_LO)) + 0.5);
+  double scaled = x.hi * (1 / (LN2_HI + LN2_LO));
+  int k = (int)(scaled + (scaled < 0 ? -0.5 : 0.5));
   struct pair r = pair_sum(x.hi - k * LN2_HI, x.lo - k * LN2_LO); // the first difference is exact
   struct pair s = pair_quick_sum(1, r.hi);
   double small = exp_tail(r.hi) + 0.5 * r.hi * r.hi + (r.lo + r.lo * r.hi);
-  return scale_by_two(s.hi + (s.lo + small), (int)k);
+  return scale_by_two(s.hi + (s.lo + small), k);
 }
 
 // x = m 2^k with m in [sqrt(1/2), sqrt(2)), x positive and finite.
