@@ -8,10 +8,10 @@ cat > "$scratch/small.yaml" <<'YAML'
 alpha: [0.5, 2/3]
 seed: small
 parts:
-  - {scene: scenes/cornell-box.pbrt, radius: 0.3, photons: 300, iterations: 12, runs: 35,
-     kernel: [box, gaussian], images: [1, 12], probes: [[20, 60], [32, 20]], direct: [photons, nee],
+  - {scene: scenes/cornell-box.pbrt, radius: 0.3, photons: 300, iterations: 4, runs: 19,
+     kernel: [box, gaussian], images: [1, 4], probes: [[20, 60], [32, 20]], direct: [photons, nee],
      reference: {integrator: path, se: 0.02}}
-  - {scene: scenes/plane-quadratic-beam.pbrt, radius: 0.5, photons: 250, iterations: 200, runs: 33,
+  - {scene: scenes/plane-quadratic-beam.pbrt, radius: 0.5, photons: 250, iterations: 20, runs: 18,
      depth: 1, probes: [[32, 32]], pixel: [centre, footprint]}
 YAML
 
