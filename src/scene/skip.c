@@ -4,7 +4,8 @@
 
 const struct skip_row skip_rows[] = {
     {"gray", SKIP_GRAY, "one channel instead of three where all spectra are gray"},
-    {"static-eye", SKIP_STATIC_EYE, "one eye pass for all iterations where the camera is not random"},
+    {"static-eye", SKIP_STATIC_EYE,
+     "one eye pass for all iterations where the camera is not random"},
     {"unseen", SKIP_UNSEEN, "photons in grid cells that no point can see are not stored"},
     {"probes", SKIP_PROBES, "only the pixels that are asked for are computed"},
 };
@@ -26,8 +27,10 @@ bool skip_read(const char *names, unsigned *off, struct problem *problem) {
     else if (length == 3 && memcmp(at, "all", 3) == 0)
       for (int k = 0; k < n_skip_rows; k++) *off |= skip_rows[k].bit;
     else
-      return problem_set(problem, "--no-skip: unknown name '%.*s'; known: all, gray, static-eye, "
-                                  "unseen, probes (see 'photonlab list skips')", (int)length, at);
+      return problem_set(problem,
+                         "--no-skip: unknown name '%.*s'; known: all, gray, static-eye, "
+                         "unseen, probes (see 'photonlab list skips')",
+                         (int)length, at);
     if (!at[length]) return true;
     at += length + 1;
   }
