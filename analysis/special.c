@@ -20,28 +20,40 @@ double special_chi2_upper(double x, double dof) {
   return x <= 0 ? 1 : gsl_cdf_chisq_Q(x, dof);
 }
 
+// Wilson and Hilferty 1931: the cube root is nearly normal; its error falls as the relative
+// variance.
+static double cube_root_deviate(double ratio, double relative_variance) {
+  double ninth = relative_variance / 9;
+  return (cbrt(ratio > 0 ? ratio : 0) - (1 - ninth)) / sqrt(ninth);
+}
+
+// Where GSL's incomplete gamma function loses digits (at 1e-9 all of them) and its inverse fails;
+// the cube root is then right to 1e-4 within four standard deviations.
+static const double small_relative_variance = 1e-4;
+
 double special_gamma_deviate(double ratio, double relative_variance) {
   gsl_set_error_handler_off();
   assert(relative_variance > 0);
+  if (relative_variance < small_relative_variance)
+    return cube_root_deviate(ratio, relative_variance);
   double shape = 1 / relative_variance;
   bool upper = ratio > 1;
   double tail = ratio <= 0 ? 0
                 : upper    ? gsl_cdf_gamma_Q(ratio, shape, relative_variance)
                            : gsl_cdf_gamma_P(ratio, shape, relative_variance);
-  // Beyond the range of doubles Wilson and Hilferty's cube root serves: nothing hangs on its
-  // digits.
-  if (!(tail > 1e-300)) {
-    double ninth = relative_variance / 9;
-    return (cbrt(ratio > 0 ? ratio : 0) - (1 - ninth)) / sqrt(ninth);
-  }
+  // Beyond the range of doubles nothing hangs on the digits.
+  if (!(tail > 1e-300)) return cube_root_deviate(ratio, relative_variance);
   return upper ? gsl_cdf_ugaussian_Qinv(tail) : gsl_cdf_ugaussian_Pinv(tail);
 }
 
+// GSL's own inverse fails for shapes below one and above 1e4; bisection of ln x does not.
 double special_gamma_quantile(double lower, double relative_variance) {
-  gsl_set_error_handler_off();
-  double x = gsl_cdf_gamma_Pinv(lower, 1 / relative_variance, relative_variance);
-  assert(isfinite(x));
-  return x;
+  double target = gsl_cdf_ugaussian_Pinv(lower), lo = -700, hi = 700;
+  while (hi - lo > 1e-13 * (1 + fabs(lo))) {
+    double middle = (lo + hi) / 2;
+    *(special_gamma_deviate(exp(middle), relative_variance) < target ? &lo : &hi) = middle;
+  }
+  return exp((lo + hi) / 2);
 }
 
 double special_zeta(int k) {

@@ -68,7 +68,7 @@ static inline double synthetic_value(const struct synthetic *s, double rho, uint
     value = mean * (1 + stream_normal(stream) / sqrt(photons));
   else
     value = poisson(photons, stream_uniform(stream)) / (s->photons_1 * r2);
-  return s->factor ? s->factor * value : value;
+  return s->factor != 0 ? s->factor * value : value;
 }
 
 static inline struct ring_mean synthetic_ring(const struct synthetic *s) {
