@@ -25,6 +25,7 @@ static inline void search_keep(struct search *s, double t, uint32_t primitive) {
 // triangle_accepts
 static inline lanes_mask block_accepts(const struct shear *s, const struct bvh_block *block) {
   lanes x[3], y[3];
+#pragma GCC unroll 3
   for (int i = 0; i < 3; i++) {
     lanes z = lanes_from(block->vertex[i][s->z]) - s->o[s->z];
     x[i] = (lanes_from(block->vertex[i][s->x]) - s->o[s->x]) - s->along_x * z;
@@ -98,6 +99,7 @@ static inline void search_leaf(struct search *s, struct bvh_child leaf) {
 static inline lanes node_clip(const struct search *s, const struct bvh_node *node, bool parallel) {
   const struct cone *cone = &s->cone;
   lanes near = {0, 0}, far = {INFINITY, INFINITY};
+#pragma GCC unroll 3
   for (int k = 0; k < 3; k++) {
     int enter = cone->backward[k];
     lanes first = lanes_from(node->face[enter][k]) - cone->o[k];
@@ -128,10 +130,23 @@ static inline void search_tree(struct search *s, bool any, bool parallel) {
     if (child.kind == BVH_NODE) {
       const struct bvh_node *node = &s->bvh->node[child.first];
       lanes t0 = node_clip(s, node, parallel);
-      int near = t0[1] < t0[0], far = 1 - near;
-      if (t0[near] < INFINITY) {
-        if (t0[far] < INFINITY) stack[n++] = (struct waiting){node->child[far], t0[far]};
-        child = node->child[near];
+      // Branches, not selections: what is predicted need not be waited for.
+      if (t0[0] < INFINITY && t0[1] < INFINITY) {
+        if (t0[1] < t0[0]) {
+          stack[n++] = (struct waiting){node->child[0], t0[0]};
+          child = node->child[1];
+        } else {
+          stack[n++] = (struct waiting){node->child[1], t0[1]};
+          child = node->child[0];
+        }
+        continue;
+      }
+      if (t0[0] < INFINITY) {
+        child = node->child[0];
+        continue;
+      }
+      if (t0[1] < INFINITY) {
+        child = node->child[1];
         continue;
       }
     } else {
@@ -146,7 +161,11 @@ static inline void search_tree(struct search *s, bool any, bool parallel) {
 }
 
 static struct hit search_run(const struct bvh *bvh, const struct ray *ray, bool any) {
-  struct search search = {bvh, ray, cone_of(ray), shear_of(ray), {ray->t_max, PRIMITIVE_NONE}};
+  struct search search;
+  search.bvh = bvh, search.ray = ray;
+  search.best = (struct hit){ray->t_max, PRIMITIVE_NONE};
+  cone_set(&search.cone, ray);
+  shear_set(&search.shear, ray);
   if (search.cone.any_parallel)
     search_tree(&search, any, true);
   else

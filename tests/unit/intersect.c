@@ -70,7 +70,8 @@ static void the_clip_of_a_box_contains_the_clip_of_every_box_inside(void **state
       d[k] = draw_below(&draw, 4) ? at - o[k] : draw_component(&draw);
     }
     struct ray ray = ray_of(vec(o[0], o[1], o[2]), vec(d[0], d[1], d[2]));
-    struct cone cone = cone_of(&ray);
+    struct cone cone;
+    cone_set(&cone, &ray);
     double t0, t1, outer_t0, outer_t1;
     if (!cone_clip(&cone, &inner, &t0, &t1)) continue;
     n_clipped++;
@@ -95,7 +96,8 @@ static void the_clip_of_a_box_contains_the_t_of_its_points(void **state) {
                        draw_between(&draw, (double)box.lo[1], (double)box.hi[1]), (double)-0.3f);
     double t = draw_between(&draw, 1e-3, 100), t0, t1;
     struct ray ray = ray_of(vec_along(p, d, -t), d);
-    struct cone cone = cone_of(&ray);
+    struct cone cone;
+    cone_set(&cone, &ray);
     assert_true(cone_clip(&cone, &box, &t0, &t1));
     assert_true(t0 <= t && t <= t1);
   }
@@ -113,7 +115,8 @@ static void a_box_beside_or_behind_the_ray_is_clipped_away(void **state) {
       {{0, 0, 1.5}, {1, 2 + apart, 0}, INFINITY, PRIMITIVE_NONE}, // past the edge x = 1, y = 2
   };
   for (int i = 0; i < 5; i++) {
-    struct cone cone = cone_of(&rays[i]);
+    struct cone cone;
+    cone_set(&cone, &rays[i]);
     double t0, t1;
     assert_false(cone_clip(&cone, &box, &t0, &t1));
   }

@@ -30,21 +30,25 @@ struct cone {
 
 static inline double cone_abs(double x) { return x < 0 ? -x : x; }
 
-static inline struct cone cone_of(const struct ray *ray) {
-  const double o[3] = {ray->o.x, ray->o.y, ray->o.z}, d[3] = {ray->d.x, ray->d.y, ray->d.z};
-  double w = 0;
-  for (int k = 0; k < 3; k++) w = cone_abs(d[k]) > w ? cone_abs(d[k]) : w;
-  w *= CLIP_APERTURE;
-  struct cone cone = {.o = {o[0], o[1], o[2]}};
-  for (int k = 0; k < 3; k++) {
-    double side = d[k] < 0 ? -w : w;
-    cone.backward[k] = d[k] < 0;
-    cone.parallel[k] = cone_abs(d[k]) <= w;
-    cone.any_parallel |= cone.parallel[k];
-    cone.near_scale[k] = 1 / (cone.parallel[k] ? 2 * w : d[k] + side);
-    cone.far_scale[k] = 1 / (d[k] - side);
-  }
-  return cone;
+static inline void cone_set_axis(struct cone *cone, int k, double o, double d, double w) {
+  bool backward = d < 0, parallel = cone_abs(d) <= w;
+  double side = backward ? -w : w;
+  cone->o[k] = o;
+  cone->backward[k] = backward;
+  cone->parallel[k] = parallel;
+  cone->near_scale[k] = 1 / (parallel ? 2 * w : d + side);
+  cone->far_scale[k] = 1 / (d - side);
+}
+
+static inline void cone_set(struct cone *cone, const struct ray *ray) {
+  double x = cone_abs(ray->d.x), y = cone_abs(ray->d.y), z = cone_abs(ray->d.z);
+  double w = x > 0 ? x : 0; // never -0: 1 / w has the sign of a distance
+  w = y > w ? y : w;
+  w = CLIP_APERTURE * (z > w ? z : w);
+  cone_set_axis(cone, 0, ray->o.x, ray->d.x, w);
+  cone_set_axis(cone, 1, ray->o.y, ray->d.y, w);
+  cone_set_axis(cone, 2, ray->o.z, ray->d.z, w);
+  cone->any_parallel = cone->parallel[0] | cone->parallel[1] | cone->parallel[2];
 }
 
 // The t >= 0 at which the cone meets the box; false if there is none.

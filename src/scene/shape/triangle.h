@@ -17,12 +17,15 @@ struct shear {
   double along_x, along_y; // d[x] / d[z], d[y] / d[z]
 };
 
-static inline struct shear shear_of(const struct ray *ray) {
+static inline void shear_set(struct shear *s, const struct ray *ray) {
   const double d[3] = {ray->d.x, ray->d.y, ray->d.z};
-  int z = cone_abs(d[0]) > cone_abs(d[1]) ? 0 : 1;
-  if (cone_abs(d[2]) > cone_abs(d[z])) z = 2;
-  int x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
-  return (struct shear){{ray->o.x, ray->o.y, ray->o.z}, x, y, z, d[x] / d[z], d[y] / d[z]};
+  s->z = cone_abs(d[0]) > cone_abs(d[1]) ? 0 : 1;
+  if (cone_abs(d[2]) > cone_abs(d[s->z])) s->z = 2;
+  s->x = s->z == 2 ? 0 : s->z + 1;
+  s->y = s->x == 2 ? 0 : s->x + 1;
+  s->o[0] = ray->o.x, s->o[1] = ray->o.y, s->o[2] = ray->o.z;
+  s->along_x = d[s->x] / d[s->z];
+  s->along_y = d[s->y] / d[s->z];
 }
 
 // Whether the ray's line passes through the triangle of these vertices.
