@@ -36,7 +36,7 @@ FLAGS.asan = -DASSERT_HOT -fsanitize=address,undefined -fno-sanitize-recover=all
 FLAGS.tsan = -fsanitize=thread -fno-omit-frame-pointer
 # No contraction and no builtins: the same bits from every compiler and level. No -march either.
 CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
-  -ffp-contract=off -fno-builtin -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
+  -ffp-contract=off -fno-builtin -fno-math-errno -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
 CPPFLAGS := -Isrc -I.
 LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -lz -lm
 

@@ -2,7 +2,7 @@
 #ifndef BASE_VEC_H
 #define BASE_VEC_H
 
-#include <math.h>
+#include "base/exact.h"
 
 struct vec {
   double x, y, z;

@@ -13,9 +13,12 @@ static uint32_t hash_cell(struct grid_cell cell) {
   return (uint32_t)(h >> 32);
 }
 
-// Floor, not truncation: cells below zero are as wide as the others.
+// Floor, not truncation: cells below zero are as wide as the others. (Without SSE4.1 floor is a call;
+// the numbers fit into 32 bits, see grid_radius_is_resolved.)
 static int32_t cell_coordinate(double x, double inverse_edge) {
-  return (int32_t)floor(x * inverse_edge);
+  double scaled = x * inverse_edge;
+  int32_t truncated = (int32_t)scaled;
+  return truncated - (scaled < truncated);
 }
 
 static struct grid_cell cell_of(struct vec p, double inverse_edge) {
