@@ -24,7 +24,7 @@ const struct experiment_key experiment_keys[] = {
      key_read_pixel},
     {"probes", "(a fixed 3x3 grid)", "pixels [[x, y], ...] from the top left", false,
      key_read_probes},
-    {"quantity", "(variance and bias)", "what is fitted: variance, bias or [variance, bias]", false,
+    {"quantity", "(variance and bias)", "what is fitted: variance, bias, both or none", false,
      key_read_quantity},
     {"images", "(none)", "N at which the running average is kept as a moment image", false,
      key_read_images},

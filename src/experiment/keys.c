@@ -118,15 +118,17 @@ static const struct node *list_item(const struct node *node, int j) {
 }
 
 bool key_read_quantity(struct reading *reading, const struct node *node, struct cell *cell) {
-  static const char *const names[] = {"variance", "bias"};
+  static const char *const names[] = {"variance", "bias", "none"};
+  static const unsigned bits[] = {QUANTITY_VARIANCE, QUANTITY_BIAS, 0};
   cell->quantities = 0;
   for (int j = 0; j < list_count(node); j++) {
     int choice;
-    if (!value_choice(reading, list_item(node, j), names, 2, &choice)) return false;
-    unsigned bit = choice == 0 ? QUANTITY_VARIANCE : QUANTITY_BIAS;
-    if (cell->quantities & bit)
+    if (!value_choice(reading, list_item(node, j), names, 3, &choice)) return false;
+    if (!bits[choice] && list_count(node) > 1)
+      return value_complain(reading, list_item(node, j), "stands alone");
+    if (cell->quantities & bits[choice])
       return value_complain(reading, list_item(node, j), "is listed twice");
-    cell->quantities |= bit;
+    cell->quantities |= bits[choice];
   }
   return true;
 }

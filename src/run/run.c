@@ -17,7 +17,7 @@
 struct unit {
   int group;
   uint64_t block;
-  double work; // photons, or samples: what progress and the order of work go by
+  double work; // seconds expected on one thread
 };
 
 struct units {
@@ -25,12 +25,28 @@ struct units {
   ptrdiff_t count, capacity;
 };
 
-static double work_of(const struct group_plan *plan, uint64_t block) {
+static double work_of(const struct group_plan *plan, double run_s, uint64_t block) {
   uint64_t runs = plan->cell->runs - block * RUNS_PER_BLOCK;
-  runs = runs < RUNS_PER_BLOCK ? runs : RUNS_PER_BLOCK;
-  double photons = plan->cell->integrator->photons ? (double)plan->cell->photons : 0;
-  return (double)runs * (double)plan->cell->iterations *
-         (photons * (plan->cell->depth < 8 ? plan->cell->depth : 8) + plan->measure.n_points);
+  return run_s * (double)(runs < RUNS_PER_BLOCK ? runs : RUNS_PER_BLOCK);
+}
+
+// Seconds one run of a group takes on one thread: a few of its iterations, spread over all of them,
+// until a twentieth of a second has passed.
+static double measure_run_s(const struct group_plan *plan, struct arena scratch) {
+  enum { PLACES = 5 };
+  const struct measurement *measure = &plan->measure;
+  const struct integrator_type *integrator = plan->cell->integrator;
+  double *frame =
+      arena_new(&scratch, double,
+                (long)measure->n_estimators * measure->n_points * measure->features.n_channels);
+  void *state = integrator->new (measure, &scratch);
+  integrator->begin(state, 1);
+  integrator->step(state, 1, frame); // warms up
+  double started = progress_clock_s(), elapsed = 0, steps = 0;
+  for (; elapsed < 0.05; elapsed = progress_clock_s() - started, steps += PLACES)
+    for (uint64_t place = 0; place < PLACES; place++)
+      integrator->step(state, 1 + (plan->cell->iterations - 1) * place / (PLACES - 1), frame);
+  return elapsed / steps * (double)plan->cell->iterations;
 }
 
 static int unit_order(const void *a, const void *b) {
@@ -44,15 +60,17 @@ static int unit_order(const void *a, const void *b) {
 static struct units units_left(const struct plan *plan, const char *directory, double *total,
                                double *done, struct arena *arena) {
   struct units units = {0};
-  for (int g = 0; g < plan->n_groups; g++)
+  for (int g = 0; g < plan->n_groups; g++) {
+    double run_s = measure_run_s(&plan->group[g], *arena);
     for (uint64_t b = 0; b < plan->group[g].n_blocks; b++) {
-      double work = work_of(&plan->group[g], b);
+      double work = work_of(&plan->group[g], run_s, b);
       *total += work;
       if (block_exists(&plan->group[g], b, directory, *arena))
         *done += work;
       else
         *arena_push(arena, &units) = (struct unit){g, b, work};
     }
+  }
   if (units.count) qsort(units.item, (size_t)units.count, sizeof *units.item, unit_order);
   return units;
 }
@@ -72,11 +90,14 @@ static struct timing compute(const struct group_plan *plan, const struct unit *u
   return (struct timing){unit->group, unit->block, progress_clock_s() - wall, thread_cpu_s() - cpu};
 }
 
+static int thread_count(const struct run_options *options) {
+  return options->threads ? options->threads : omp_get_max_threads();
+}
+
 // All units on all threads. Each writes its own file, so there is nothing to share but the queue.
 static void compute_all(const struct plan *plan, const char *directory, const struct units *units,
                         struct progress *progress, struct timing *timing) {
-  int threads = plan->options.threads ? plan->options.threads : omp_get_max_threads();
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(thread_count(&plan->options))
   {
     struct arena scratch = arena_reserve();
 #pragma omp for schedule(dynamic, 1)
@@ -134,6 +155,10 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
   double total = 0, done = 0;
   struct units units = units_left(&plan, directory, &total, &done, arena);
   struct timing *timing = arena_new(arena, struct timing, units.count);
+  int threads = thread_count(&options);
+  if (!options.quiet)
+    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", experiment->name,
+            total - done, (total - done) / threads, threads);
   struct progress progress = progress_begin(experiment->name, total, done, options.quiet);
   compute_all(&plan, directory, &units, &progress, timing);
   progress_end(&progress);
