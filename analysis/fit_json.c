@@ -107,12 +107,15 @@ static void print_quoted(FILE *stream, const char *text) {
 static void print_point(FILE *stream, const struct fit_point *point) {
   const struct fit_row *row = point->row;
   const struct cell *cell = row->cell;
+  // A curve that was fitted, not predicted, to a bias that was not found would only show noise.
+  bool known = row->quantity == QUANTITY_VARIANCE || isfinite(row->coefficient_theory) ||
+               row->verdict == VERDICT_AGREE || row->verdict == VERDICT_DISAGREE;
   print_quoted(stream, cell->scene);
   fprintf(stream, ",%d,%d,%s,%s,%s,%.17g,%s,%llu", row->probe->x, row->probe->y,
           cell->integrator->name, cell->kernel->name, cell->law->name, cell->alpha,
           quantity_name(row->quantity), (unsigned long long)point->n);
   const double value[] = {point->measured, point->lower, point->upper, point->pooled,
-                          point->predicted};
+                          known ? point->predicted : NAN};
   for (int k = 0; k < 5; k++)
     isfinite(value[k]) ? fprintf(stream, ",%.17g", value[k]) : fputs(",nan", stream);
   fputc('\n', stream);

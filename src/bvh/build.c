@@ -13,8 +13,9 @@
 
 enum {
   N_BINS = 32,
-  LEAF_SIZE = 4,
-  FLAT_SIZE = 8, // so few primitives are one leaf: no tree
+  LEAF_SIZE = 4, // measured: 2 to 8 and NODE_COST 0.5 to 1 differ by less than 10 %
+  FLAT_SIZE =
+      8, // no tree. Measured: at 12 triangles equal to one, at 24 a tree is 1.3 times faster
 };
 static const double NODE_COST = 0.5;
 
