@@ -11,12 +11,9 @@
 #include <assert.h>
 #include <string.h>
 
-enum {
-  N_BINS = 32,
-  LEAF_SIZE = 4, // measured: 2 to 8 and NODE_COST 0.5 to 1 differ by less than 10 %
-  FLAT_SIZE =
-      8, // no tree. Measured: at 12 triangles equal to one, at 24 a tree is 1.3 times faster
-};
+// Measured on one core, rays per second: leaves of 2 to 8 and NODE_COST 0.5 to 1 differ by less
+// than 10 %. No tree (FLAT_SIZE) equals a tree at 12 triangles; at 24 the tree is 1.3 times faster.
+enum { N_BINS = 32, LEAF_SIZE = 4, FLAT_SIZE = 12 };
 static const double NODE_COST = 0.5;
 
 struct build {

@@ -6,10 +6,10 @@
 #include "base/arena.h"
 #include "scene/scene.h"
 
-struct bvh; // bvh/bvh.c
+struct bvh; // bvh/tree.h
 
 struct bvh_options {
-  int leaf_size; // most primitives in a leaf; 0: the default
+  int leaf_size; // most primitives in a leaf; 0: the default, and no tree for a few primitives
 };
 
 struct bvh *bvh_build(const struct scene *, struct bvh_options, struct arena *);
