@@ -159,7 +159,7 @@ $(call object,$(test_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_te
 -include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources)) $(generated))
 
 # ---- tests ----
-.PHONY: test test-programs test-asan test-tsan test-plants validate
+.PHONY: test test-programs test-asan test-tsan test-bits test-plants validate
 test-programs: $(test_programs)
 
 test: $(binary) $(test_programs)
@@ -175,6 +175,9 @@ test-tsan:
 	@$(MAKE) BUILD=tsan test-programs
 	@OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(call sanitized,tsan)
+
+test-bits: $(binary)
+	@PHOTONLAB=$(binary) tests/run tests/bits
 
 test-plants:
 	@tests/plants/run
@@ -225,6 +228,7 @@ help:
 	@echo 'make test              all tests: N passed, N failed'
 	@echo 'make test-asan         unit and statistical tests under address and undefined sanitizers'
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
+	@echo 'make test-bits         the same bytes from gcc -O1, -O3, clang and every instruction set'
 	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
 	@echo 'make validate          the built-in checks against closed forms'
 	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
