@@ -46,11 +46,9 @@ static inline lanes block_plane(const struct ray *ray, const struct bvh_block *b
   return (n[0] * x + n[1] * y + n[2] * z) / (n[0] * ray->d.x + n[1] * ray->d.y + n[2] * ray->d.z);
 }
 
-static inline struct box block_box(const struct bvh_block *block, int lane) {
-  float vertex[3][3];
+static inline void block_gather(const struct bvh_block *block, int lane, float vertex[3][3]) {
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) vertex[i][k] = block->vertex[i][k][lane];
-  return triangle_box(vertex);
 }
 
 static inline void search_block(struct search *s, const struct bvh_block *block) {
@@ -60,9 +58,12 @@ static inline void search_block(struct search *s, const struct bvh_block *block)
   unsigned bits = lanes_bits(accepted & (t > 0) & (t < INFINITY));
   for (int lane = 0; bits; lane++, bits >>= 1) {
     if (!(bits & 1) || block->primitive[lane] == s->ray->leaving) continue;
-    struct box box = block_box(block, lane);
+    float vertex[3][3];
+    block_gather(block, lane, vertex);
+    struct box box = triangle_box(vertex);
     double t_lane = t[lane];
-    if (clip_accept(&s->cone, &box, s->ray->t_max, &t_lane))
+    if (clip_accept(&s->cone, &box, s->ray->t_max, &t_lane) &&
+        !triangle_is_left_behind(s->bvh->scene, s->ray, vertex))
       search_keep(s, t_lane, block->primitive[lane]);
   }
 }

@@ -4,6 +4,30 @@
 #include "scene/shape/sphere.h"
 #include "scene/shape/triangle.h"
 
+static bool vertex_is_shared(const float vertex[3], const float other[3][3]) {
+  for (int i = 0; i < 3; i++)
+    if (vertex[0] == other[i][0] && vertex[1] == other[i][1] && vertex[2] == other[i][2])
+      return true;
+  return false;
+}
+
+bool triangle_is_left_behind(const struct scene *scene, const struct ray *ray,
+                             const float vertex[3][3]) {
+  if (ray->leaving == PRIMITIVE_NONE) return false;
+  const struct shape *shape = &scene->shape[scene->shape_of[ray->leaving]];
+  if (shape->type->intersect != triangle_intersect) return false;
+  float left[3][3];
+  triangle_gather(scene, shape, ray->leaving, left);
+  struct vec n = triangle_cross(left), p = triangle_vertex(left[0]);
+  double side = vec_dot(n, ray->d);
+  if (side == 0) return false;
+  for (int i = 0; i < 3; i++) {
+    double height = vec_dot(n, vec_sub(triangle_vertex(vertex[i]), p));
+    if ((side > 0 ? height > 0 : height < 0) && !vertex_is_shared(vertex[i], left)) return false;
+  }
+  return true;
+}
+
 bool triangle_intersect(const struct scene *scene, const struct shape *shape, uint32_t primitive,
                         const struct ray *ray, double *t) {
   if (ray->leaving == primitive) return false;
@@ -16,7 +40,7 @@ bool triangle_intersect(const struct scene *scene, const struct shape *shape, ui
   cone_set(&cone, ray);
   struct box box = triangle_box(vertex);
   *t = triangle_plane(ray, vertex);
-  return clip_accept(&cone, &box, ray->t_max, t);
+  return clip_accept(&cone, &box, ray->t_max, t) && !triangle_is_left_behind(scene, ray, vertex);
 }
 
 bool disk_intersect(const struct scene *scene, const struct shape *shape, uint32_t primitive,

@@ -10,7 +10,8 @@
 #define PRIMITIVE_NONE UINT32_MAX
 
 // One cache line. Hits are searched in 0 < t < t_max; `leaving` is the primitive the origin lies
-// on: a flat one is ignored, a curved one uses its derived bound on t. No origin is ever moved.
+// on: a flat one is ignored (a triangle with every triangle in its plane or behind it), of a curved
+// one the root that is the origin itself. No origin is ever moved.
 struct ray {
   struct vec o, d;  // d need not be of unit length
   double t_max;

@@ -350,10 +350,13 @@ static void a_hundred_thousand_coincident_triangles_are_a_balanced_tree(void **s
   mesh_finish(&m);
   struct bvh *bvh = bvh_build(&m.scene, (struct bvh_options){0}, &m.arena);
   assert_true(bvh_statistics(bvh).depth <= 17); // ceil(log2(N))
-  struct ray ray = {vec(0, 0, 0), vec(0.3, 0.4, 0.5), INFINITY, 0};
+  struct ray ray = {vec(0, 0, 0), vec(0.3, 0.4, 0.5), INFINITY, PRIMITIVE_NONE};
   struct hit hit;
   bvh_closest(bvh, &ray, &hit, 1);
-  assert_int_equal(hit.primitive, 1); // the smallest number of those that are not left
+  assert_int_equal(hit.primitive, 0); // the smallest number
+  ray.leaving = 7;
+  bvh_closest(bvh, &ray, &hit, 1);
+  assert_int_equal(hit.primitive, PRIMITIVE_NONE); // all lie in the plane that is left
   mesh_release(&m);
 }
 

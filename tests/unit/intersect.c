@@ -199,6 +199,48 @@ static void a_common_edge_belongs_to_both_triangles(void **state) {
 
 // Aimed at the point with barycentric u, v from o: t = 1. The numerator n . p0' is off by at most
 // 8 roundings of |n| |p0'|, and so is the target (p0' in place of p').
+// Two triangles with a common edge; the fourth vertex is bent by `fold` (> 0: towards the viewer).
+static struct mesh folded(struct draw *draw, double z, double fold) {
+  struct mesh m = mesh_new(1, 2);
+  mesh_add_shape(&m, &shape_trianglemesh);
+  struct vec a = vec(-draw_between(draw, 1, 2), -draw_between(draw, 1, 2), z);
+  struct vec c = vec(draw_between(draw, 1, 2), draw_between(draw, 1, 2), z);
+  mesh_add_triangle(&m, a, vec(draw_between(draw, 1, 2), -draw_between(draw, 1, 2), z), c);
+  mesh_add_triangle(&m, a, c, vec(-draw_between(draw, 1, 2), draw_between(draw, 1, 2), z + fold));
+  return m;
+}
+
+// What a ray that leaves triangle 0 at a point of the common edge meets of triangle 1, out of n
+// tries towards the viewer's side; `across`: only directions that pass over triangle 1.
+static int met_from_the_edge(const char *name, double fold, bool across, int n) {
+  struct draw draw = draw_named(name);
+  int met = 0;
+  for (int i = 0; i < n; i++) {
+    struct mesh m = folded(&draw, draw_between(&draw, -3, 3), fold);
+    struct vec a = mesh_vertex(&m, 0), c = mesh_vertex(&m, 2), eye = vec(0.1, -0.2, 9);
+    struct vec on_edge = vec_along(a, vec_sub(c, a), draw_between(&draw, 0.1, 0.9)), d;
+    struct ray down = ray_of(eye, vec_sub(on_edge, eye));
+    double t;
+    if (!primitive_hit(&m, 0, &down, &t)) t = 1; // rounded to the other side
+    do d = vec(draw_between(&draw, -1, 1), draw_between(&draw, -1, 1), draw_between(&draw, 0, 0.2));
+    while (across && vec_cross(vec_sub(c, a), d).z < 0.5);
+    struct ray up = ray_of(vec_along(down.o, down.d, t), d);
+    up.leaving = 0;
+    met += primitive_hit(&m, 1, &up, &t);
+    mesh_release(&m);
+  }
+  return met;
+}
+
+static void a_point_on_a_common_edge_is_not_shadowed_by_its_neighbour(void **state) {
+  (void)state;
+  assert_int_equal(met_from_the_edge("flat", 0, false, 3000), 0);
+  assert_int_equal(met_from_the_edge("bent away", -0.5, false, 3000), 0);
+  // Bent towards the viewer by more than the ray rises, the neighbour does shadow it, unless the
+  // origin is rounded to its front.
+  assert_true(met_from_the_edge("bent towards", 8, true, 3000) > 500);
+}
+
 static void the_t_of_a_triangle_is_where_its_plane_is(void **state) {
   (void)state;
   struct draw draw = draw_named(__func__);
@@ -359,6 +401,7 @@ int main(void) {
       cmocka_unit_test(t_max_and_zero_are_excluded_and_leaving_is_ignored),
       cmocka_unit_test(a_triangle_without_area_or_seen_edge_on_is_never_hit),
       cmocka_unit_test(a_common_edge_belongs_to_both_triangles),
+      cmocka_unit_test(a_point_on_a_common_edge_is_not_shadowed_by_its_neighbour),
       cmocka_unit_test(the_t_of_a_triangle_is_where_its_plane_is),
       cmocka_unit_test(every_triangle_shape_is_known_to_the_tree),
       cmocka_unit_test(a_sphere_is_hit_at_the_closest_root_ahead),
