@@ -219,14 +219,15 @@ static int met_from_the_edge(const char *name, double fold, bool across, int n) 
     struct mesh m = folded(&draw, draw_between(&draw, -3, 3), fold);
     struct vec a = mesh_vertex(&m, 0), c = mesh_vertex(&m, 2), eye = vec(0.1, -0.2, 9);
     struct vec on_edge = vec_along(a, vec_sub(c, a), draw_between(&draw, 0.1, 0.9)), d;
-    struct ray down = ray_of(eye, vec_sub(on_edge, eye));
-    double t;
-    if (!primitive_hit(&m, 0, &down, &t)) t = 1; // rounded to the other side
+    struct ray down = ray_of(eye, vec_normalize(vec_sub(on_edge, eye)));
     do d = vec(draw_between(&draw, -1, 1), draw_between(&draw, -1, 1), draw_between(&draw, 0, 0.2));
     while (across && vec_cross(vec_sub(c, a), d).z < 0.5);
-    struct ray up = ray_of(vec_along(down.o, down.d, t), d);
-    up.leaving = 0;
-    met += primitive_hit(&m, 1, &up, &t);
+    double t;
+    if (primitive_hit(&m, 0, &down, &t)) { // rounding may leave the point to the neighbour
+      struct ray up = ray_of(vec_along(down.o, down.d, t), d);
+      up.leaving = 0;
+      met += primitive_hit(&m, 1, &up, &t);
+    }
     mesh_release(&m);
   }
   return met;
