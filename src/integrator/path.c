@@ -78,11 +78,18 @@ static uint64_t path_number(const struct measurement *measure, int j) {
   return eye_path(camera, measure->pixel[j]) + replica * pixels;
 }
 
+// Kernel, law and radius mean nothing here: estimators that differ in them get the same values.
+static void copy_to_others(const struct measurement *measure, long size, double *frame) {
+  for (int e = 1; e < measure->n_estimators; e++)
+    memcpy(frame + e * size, frame, (size_t)size * sizeof *frame);
+}
+
 static void path_step(void *data, uint64_t i, double *frame) {
   struct path *state = data;
   const struct measurement *measure = state->measure;
   struct walk *walk = state->walk;
-  memset(frame, 0, (size_t)measure->n_points * (size_t)walk->n_channels * sizeof *frame);
+  long size = (long)measure->n_points * walk->n_channels;
+  memset(frame, 0, (size_t)size * sizeof *frame);
   walk->key = rng_key(measure->seed, state->run, RNG_EYE);
   walk->iteration = i;
   for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
@@ -95,6 +102,7 @@ static void path_step(void *data, uint64_t i, double *frame) {
       meet(state, out);
     }
   }
+  copy_to_others(measure, size, frame);
 }
 
 const struct integrator_type integrator_path = {
