@@ -136,9 +136,11 @@ static bool write_probes(const struct outputs *outputs, struct arena scratch,
   fprintf(out.stream, "%s\n", probes_header);
   for (int g = 0; g < outputs->plan->n_groups; g++) {
     const struct group_plan *group = &outputs->plan->group[g];
-    for (int e = 0; e < group->group->n_cells; e++)
-      probes_write(out.stream, &outputs->plan->experiment->cell[group->group->cell[e]],
-                   outputs->probe[g], group->n_probes);
+    for (int e = 0; e < group->group->n_cells; e++) {
+      int c = group->group->cell[e];
+      probes_write(out.stream, &outputs->plan->experiment->cell[c], outputs->probe[c],
+                   group->n_probes);
+    }
   }
   return file_commit(&out, problem);
 }

@@ -12,7 +12,7 @@ struct timing {
 
 struct outputs {
   const struct plan *plan;
-  struct probe *const *probe; // by group
+  struct probe *const *probe; // by cell
   const struct timing *timing;
   int n_timings;
   const char *directory;

@@ -71,6 +71,18 @@ static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct pro
   return true;
 }
 
+static bool check_probes_hit(const struct group_plan *plan, struct arena scratch,
+                             struct problem *problem) {
+  struct probe *probe = arena_new(&scratch, struct probe, plan->n_probes);
+  plan_probes(plan, probe, scratch);
+  for (int p = 0; p < plan->n_probes; p++)
+    if (!probe[p].hit)
+      return problem_set(problem, "%s: %s [%d, %d] sees no surface, choose pixels that do",
+                         plan->cell->scene_path, plan->cell->n_probes ? "probe" : "default probe",
+                         probe[p].x, probe[p].y);
+  return true;
+}
+
 static bool plan_estimators(struct group_plan *plan, const struct experiment *experiment,
                             struct arena *arena, struct problem *problem) {
   struct measurement *measure = &plan->measure;
@@ -133,7 +145,7 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
       .skip_off = plan->options.skip_off,
   };
   if (plan->options.skip_off & SKIP_GRAY) out->measure.features.n_channels = 3;
-  if (!plan_pixels(out, arena, problem)) return false;
+  if (!plan_pixels(out, arena, problem) || !check_probes_hit(out, *arena, problem)) return false;
   if (!plan_estimators(out, plan->experiment, arena, problem)) return false;
   plan_layout(out, arena);
   return true;

@@ -18,16 +18,19 @@ enum {
 
 struct reference {
   const struct group_plan *plan;
+  double target_se;
   const struct integrator_type *integrator;
   struct measurement measure;
   int replicas;
   struct moments_tree tree; // over steps, in their order
 };
 
-static struct reference reference_of(const struct group_plan *plan, struct arena *arena) {
-  struct reference reference = {.plan = plan, .measure = plan->measure};
-  reference.integrator = integrator_find(plan->cell->reference_integrator);
-  reference.replicas = SAMPLES_PER_STEP / plan->n_probes;
+static struct reference reference_of(const struct group_plan *plan, const struct cell *cell,
+                                     struct arena *arena) {
+  struct reference reference = {
+      .plan = plan, .target_se = cell->reference_se, .measure = plan->measure};
+  reference.integrator = integrator_find(cell->reference_integrator);
+  reference.replicas = plan->n_probes < SAMPLES_PER_STEP ? SAMPLES_PER_STEP / plan->n_probes : 1;
   int n = reference.replicas * plan->n_probes;
   struct pixel *pixel = arena_new(arena, struct pixel, n);
   for (int j = 0; j < n; j++) pixel[j] = plan->probe_pixel[j / reference.replicas];
@@ -93,8 +96,8 @@ static double largest_se(const struct reference *reference, struct moments *root
 
 // ---- cache ----
 
-static char *cache_path(const struct group_plan *plan, const char *directory, struct arena *arena) {
-  const struct cell *cell = plan->cell;
+static char *cache_path(const struct group_plan *plan, const struct cell *cell,
+                        const char *directory, struct arena *arena) {
   char *key =
       arena_format(arena, "2 %016llx %s %d %d %.17g", (unsigned long long)plan->loaded->scene.hash,
                    cell->reference_integrator, cell->depth, cell->footprint, cell->reference_se);
@@ -134,7 +137,7 @@ static bool cache_write(const char *path, const struct group_plan *plan, const s
 // Doubles the number of samples until every probe's error is small enough. False: interrupted.
 static bool refine(struct reference *reference, const struct run_options *options,
                    struct moments *root, struct arena *arena) {
-  double target = reference->plan->cell->reference_se;
+  double target = reference->target_se;
   int threads = options->threads ? options->threads : omp_get_max_threads();
   struct progress progress = progress_begin("reference", 1, 0, options->quiet);
   for (uint64_t done = 0, next = FIRST_UNITS;; done = next, next *= 2) {
@@ -150,14 +153,14 @@ static bool refine(struct reference *reference, const struct run_options *option
   return true;
 }
 
-bool reference_make(const struct group_plan *plan, const struct run_options *options,
-                    const char *directory, struct probe *probe, struct arena scratch,
-                    struct problem *problem) {
-  const char *name = plan->cell->reference_integrator;
+bool reference_make(const struct group_plan *plan, const struct cell *cell,
+                    const struct run_options *options, const char *directory, struct probe *probe,
+                    struct arena scratch, struct problem *problem) {
+  const char *name = cell->reference_integrator;
   if (strcmp(name, "none") == 0 || strcmp(name, "analytic") == 0) return true;
-  char *path = cache_path(plan, directory, &scratch);
+  char *path = cache_path(plan, cell, directory, &scratch);
   if (cache_read(path, plan, probe, scratch)) return true;
-  struct reference reference = reference_of(plan, &scratch);
+  struct reference reference = reference_of(plan, cell, &scratch);
   struct moments *root = arena_new(&scratch, struct moments, plan->n_probes);
   if (!refine(&reference, options, root, &scratch)) return false;
   for (int p = 0; p < plan->n_probes; p++) {

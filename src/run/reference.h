@@ -5,9 +5,9 @@
 
 #include "run/plan.h"
 
-// Fills reference and reference_se of the group's probes. `directory` holds the cache. The seed is
-// the references' own and shared with no run. Interrupted: returns false without a problem.
-bool reference_make(const struct group_plan *, const struct run_options *, const char *directory,
-                    struct probe *, struct arena scratch, struct problem *);
+// Fills reference and reference_se of the group's probes as one of its cells asks. `directory`
+// holds the cache. The seed is the references' own. Interrupted: returns false without a problem.
+bool reference_make(const struct group_plan *, const struct cell *, const struct run_options *,
+                    const char *directory, struct probe *, struct arena scratch, struct problem *);
 
 #endif

@@ -111,19 +111,20 @@ static void compute_all(const struct plan *plan, const char *directory, const st
   }
 }
 
-// Probes of all groups, with references. False without a problem: interrupted.
+// Probes of all cells, with references. False without a problem: interrupted.
 static bool probes_make(const struct plan *plan, const char *directory, struct probe **probe,
                         struct arena *arena, struct problem *problem) {
   char *references = arena_format(arena, "%s/../references", directory);
   for (int g = 0; g < plan->n_groups; g++) {
     const struct group_plan *group = &plan->group[g];
-    probe[g] = arena_new(arena, struct probe, group->n_probes);
-    plan_probes(group, probe[g], *arena);
-    for (int p = 0; p < group->n_probes; p++)
-      if (!probe[g][p].hit)
-        return problem_set(problem, "%s: probe [%d, %d] sees no surface, choose another pixel",
-                           group->cell->scene_path, probe[g][p].x, probe[g][p].y);
-    if (!reference_make(group, &plan->options, references, probe[g], *arena, problem)) return false;
+    for (int e = 0; e < group->group->n_cells; e++) {
+      int c = group->group->cell[e];
+      probe[c] = arena_new(arena, struct probe, group->n_probes);
+      plan_probes(group, probe[c], *arena);
+      if (!reference_make(group, &plan->experiment->cell[c], &plan->options, references, probe[c],
+                          *arena, problem))
+        return false;
+    }
   }
   return true;
 }
@@ -149,7 +150,7 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
       !file_make_directory(arena_format(arena, "%s/blocks", directory), problem))
     return RUN_FAILED;
   interrupt_install();
-  struct probe **probe = arena_new(arena, struct probe *, plan.n_groups);
+  struct probe **probe = arena_new(arena, struct probe *, experiment->n_cells);
   if (!probes_make(&plan, directory, probe, arena, problem))
     return problem->text[0] ? RUN_FAILED : interrupted(directory);
   double total = 0, done = 0;
