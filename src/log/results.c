@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 
-#include <errno.h>
+#include <assert.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,19 +20,38 @@ static bool csv_bad(struct csv *csv, const char *what) {
   return problem_at(csv->problem, place, "%s: the file is damaged, run the experiment again", what);
 }
 
-static char *csv_field(struct csv *csv) {
-  char *field = csv->at;
-  size_t length = strcspn(field, ",\n");
-  csv->at += length + (field[length] != 0);
-  field[length] = 0;
-  return field;
+// Splits the next line into exactly n fields.
+static bool csv_row(struct csv *csv, int n, char **field) {
+  csv->line++;
+  for (int k = 0; k < n; k++) {
+    size_t length = strcspn(csv->at, ",\n");
+    if (csv->at[length] != (k + 1 < n ? ',' : '\n'))
+      return csv_bad(csv, "a row has not as many fields as columns");
+    field[k] = csv->at;
+    field[k][length] = 0;
+    csv->at += length + 1;
+  }
+  return true;
 }
 
-static double csv_number(struct csv *csv) {
-  char *field = csv_field(csv), *end;
-  double value = strtod(field, &end);
-  if (end == field || *end) csv_bad(csv, "a number is missing");
-  return value;
+static bool csv_numbers(struct csv *csv, char *const *field, int n, double *const *value) {
+  for (int k = 0; k < n; k++) {
+    char *end;
+    *value[k] = strtod(field[k], &end);
+    if (end == field[k] || *end) return csv_bad(csv, "a number is missing");
+  }
+  return true;
+}
+
+// A whole number from `least` to `most`, both below 2^53.
+static bool csv_whole(struct csv *csv, char *field, uint64_t least, uint64_t most,
+                      uint64_t *value) {
+  double number = 0;
+  if (!csv_numbers(csv, &field, 1, (double *[]){&number})) return false;
+  if (!(number >= (double)least && number <= (double)most) || number != floor(number))
+    return csv_bad(csv, "a number is out of range");
+  *value = (uint64_t)number;
+  return true;
 }
 
 static bool csv_open(struct csv *csv, const char *path, const char *header, struct arena *arena,
@@ -44,7 +63,6 @@ static bool csv_open(struct csv *csv, const char *path, const char *header, stru
   if (length != strlen(header) || memcmp(text.data, header, length) != 0)
     return csv_bad(csv, "unexpected columns");
   csv->at += length + (text.data[length] != 0);
-  csv->line = 2;
   return true;
 }
 
@@ -57,18 +75,37 @@ static char *log_header(struct arena *arena) {
 
 // ---- probes.csv ----
 
-static struct probe read_probe(struct csv *csv) {
-  struct probe probe = {0};
-  probe.x = (int)csv_number(csv);
-  probe.y = (int)csv_number(csv);
-  probe.hit = csv_number(csv) != 0;
-  double *const number[] = {&probe.p.x,          &probe.p.y,          &probe.p.z,
-                            &probe.n.x,          &probe.n.y,          &probe.n.z,
-                            &probe.scale_rgb[0], &probe.scale_rgb[1], &probe.scale_rgb[2],
-                            &probe.emitted,      &probe.reference,    &probe.reference_se};
-  for (size_t k = 0; k < sizeof number / sizeof *number; k++) *number[k] = csv_number(csv);
-  probe.scale = luminance(probe.scale_rgb, 3);
-  return probe;
+enum { PROBE_COLUMNS = 17, MOST_PIXELS = 1 << 30 };
+
+static bool read_probe(struct csv *csv, char *const *field, struct probe *probe) {
+  uint64_t x, y, hit;
+  double *const number[] = {&probe->p.x,          &probe->p.y,          &probe->p.z,
+                            &probe->n.x,          &probe->n.y,          &probe->n.z,
+                            &probe->scale_rgb[0], &probe->scale_rgb[1], &probe->scale_rgb[2],
+                            &probe->emitted,      &probe->reference,    &probe->reference_se};
+  if (!csv_whole(csv, field[0], 0, MOST_PIXELS, &x) ||
+      !csv_whole(csv, field[1], 0, MOST_PIXELS, &y) || !csv_whole(csv, field[2], 0, 1, &hit) ||
+      !csv_numbers(csv, field + 3, sizeof number / sizeof *number, number))
+    return false;
+  probe->x = (int)x;
+  probe->y = (int)y;
+  probe->hit = hit;
+  probe->scale = luminance(probe->scale_rgb, 3);
+  return true;
+}
+
+static bool read_probe_row(struct csv *csv, struct arena *arena, struct results *results) {
+  char *field[PROBE_COLUMNS];
+  uint64_t cell, probe;
+  if (!csv_row(csv, PROBE_COLUMNS, field) ||
+      !csv_whole(csv, field[0], 0, (uint64_t)results->experiment.n_cells - 1, &cell) ||
+      !csv_whole(csv, field[1], 0, MOST_PIXELS, &probe))
+    return false;
+  int have = results->n_probes[cell]++;
+  if (probe != (uint64_t)have) return csv_bad(csv, "a row is out of order");
+  results->probe[cell] = arena_grow(arena, results->probe[cell], have, have + 1,
+                                    sizeof(struct probe), alignof(struct probe));
+  return read_probe(csv, field + 2, &results->probe[cell][probe]);
 }
 
 static bool read_probes(const char *path, struct arena *arena, struct results *results,
@@ -78,22 +115,24 @@ static bool read_probes(const char *path, struct arena *arena, struct results *r
   int n_cells = results->experiment.n_cells;
   results->probe = arena_new(arena, struct probe *, n_cells);
   results->n_probes = arena_new(arena, int, n_cells);
-  for (; *csv.at && !problem->text[0]; csv.line++) {
-    int cell = (int)csv_number(&csv), probe = (int)csv_number(&csv);
-    if (cell < 0 || cell >= n_cells || probe != results->n_probes[cell])
-      return csv_bad(&csv, "a row is out of order");
-    int have = results->n_probes[cell]++;
-    results->probe[cell] = arena_grow(arena, results->probe[cell], have, have + 1,
-                                      sizeof(struct probe), alignof(struct probe));
-    results->probe[cell][probe] = read_probe(&csv);
-  }
-  return !problem->text[0];
+  while (*csv.at)
+    if (!read_probe_row(&csv, arena, results)) return false;
+  return true;
 }
 
 // ---- log.csv ----
 
+enum { LOG_COLUMNS = 15, LOG_CELL = 0, LOG_PROBE = 2, LOG_SERIES = 7, LOG_I = 8, LOG_N = 10 };
+
+// Series of cells before `cell`.
+static int series_before(const struct results *results, int cell) {
+  int n = 0;
+  for (int c = 0; c < cell; c++) n += results->n_probes[c];
+  return n;
+}
+
 static void series_reserve(struct results *results, struct arena *arena) {
-  for (int c = 0; c < results->experiment.n_cells; c++) results->n_series += results->n_probes[c];
+  results->n_series = series_before(results, results->experiment.n_cells);
   results->series = arena_new(arena, struct series, results->n_series);
   struct series *series = results->series;
   for (int c = 0; c < results->experiment.n_cells; c++)
@@ -106,55 +145,97 @@ static void series_reserve(struct results *results, struct arena *arena) {
     }
 }
 
-static struct series *series_find(struct results *results, int cell, int probe) {
-  struct series *series = results->series;
-  for (int c = 0; c < results->experiment.n_cells; c++) {
-    if (c == cell && probe >= 0 && probe < results->n_probes[c]) return series + probe;
-    series += results->n_probes[c];
+static bool keep_moments(struct csv *csv, struct series *series, bool average, uint64_t i,
+                         struct moments m) {
+  if (!average) {
+    if (series->iteration[i - 1].n > 0) return csv_bad(csv, "an iteration stands twice");
+    series->iteration[i - 1] = m;
+    return true;
   }
-  return NULL;
+  int n = series->n_checkpoints;
+  if (n > 0 && i <= series->checkpoint[n - 1]) return csv_bad(csv, "averages do not ascend");
+  series->checkpoint[n] = i;
+  series->average[n] = m;
+  series->n_checkpoints++;
+  return true;
 }
 
-static bool read_row(struct csv *csv, struct results *results) {
-  int cell = (int)csv_number(csv);
-  csv_field(csv); // scene
-  int probe = (int)csv_number(csv);
-  for (int skipped = 0; skipped < 4; skipped++) csv_field(csv); // integrator ... alpha
-  bool average = strcmp(csv_field(csv), "average") == 0;
-  double i = csv_number(csv);
-  csv_number(csv); // radius follows from the law
+static bool read_log_row(struct csv *csv, struct results *results) {
+  char *field[LOG_COLUMNS];
+  uint64_t cell, probe, i;
+  if (!csv_row(csv, LOG_COLUMNS, field) ||
+      !csv_whole(csv, field[LOG_CELL], 0, (uint64_t)results->experiment.n_cells - 1, &cell))
+    return false;
+  if (results->n_probes[cell] == 0) return csv_bad(csv, "a row of a cell without probes");
+  if (!csv_whole(csv, field[LOG_PROBE], 0, (uint64_t)results->n_probes[cell] - 1, &probe))
+    return false;
+  struct series *series = &results->series[series_before(results, (int)cell) + (int)probe];
+  bool average = strcmp(field[LOG_SERIES], "average") == 0;
+  if (!average && strcmp(field[LOG_SERIES], "iteration") != 0)
+    return csv_bad(csv, "a row of an unknown series");
   struct moments m;
-  double *const number[] = {&m.n, &m.mean, &m.m2, &m.m3, &m.m4};
-  for (size_t k = 0; k < sizeof number / sizeof *number; k++) *number[k] = csv_number(csv);
-  struct series *series = series_find(results, cell, probe);
-  if (!series || i < 1 || i > (double)series->n_iterations)
-    return csv_bad(csv, "a row of an unknown cell, probe or iteration");
-  if (!average) {
-    series->iteration[(uint64_t)i - 1] = m;
-  } else {
-    series->checkpoint[series->n_checkpoints] = (uint64_t)i;
-    series->average[series->n_checkpoints++] = m;
-  }
-  return true;
+  if (!csv_whole(csv, field[LOG_I], 1, series->n_iterations, &i) ||
+      !csv_numbers(csv, field + LOG_N, 5, (double *[]){&m.n, &m.mean, &m.m2, &m.m3, &m.m4}))
+    return false;
+  if (m.n != (double)results->experiment.cell[cell].runs)
+    return csv_bad(csv, "a row of another number of runs");
+  return keep_moments(csv, series, average, i, m);
+}
+
+static bool series_is_complete(const struct series *series) {
+  for (uint64_t i = 0; i < series->n_iterations; i++)
+    if (series->iteration[i].n == 0) return false;
+  int n = series->n_checkpoints;
+  return n > 0 && series->checkpoint[n - 1] == series->n_iterations;
 }
 
 static bool read_log(const char *path, struct arena *arena, struct results *results,
                      struct problem *problem) {
   struct csv csv;
+  assert(n_log_columns == LOG_COLUMNS);
   if (!csv_open(&csv, path, log_header(arena), arena, problem)) return false;
   series_reserve(results, arena);
-  for (; *csv.at && !problem->text[0]; csv.line++)
-    if (!read_row(&csv, results)) return false;
-  for (int k = 0; k < results->n_series && !problem->text[0]; k++)
-    for (uint64_t i = 0; i < results->series[k].n_iterations; i++)
-      if (results->series[k].iteration[i].n == 0) return csv_bad(&csv, "an iteration is missing");
-  return !problem->text[0];
+  while (*csv.at)
+    if (!read_log_row(&csv, results)) return false;
+  for (int k = 0; k < results->n_series; k++)
+    if (!series_is_complete(&results->series[k])) return csv_bad(&csv, "an iteration is missing");
+  return true;
 }
 
 // ---- manifest.json ----
 
-static bool read_manifest(const char *path, struct arena *arena, struct results *results,
-                          const char **quality, const char **file, struct problem *problem) {
+struct manifest {
+  const char *name, *quality;
+  int n_cells;
+  uint64_t *scene_hash, *seed; // by cell; the command line may have set the seed
+};
+
+static bool read_hex(json_t *object, const char *key, uint64_t *value) {
+  const char *text = json_string_value(json_object_get(object, key));
+  if (text) *value = strtoull(text, NULL, 16);
+  return text != NULL;
+}
+
+static bool take_manifest(json_t *root, struct arena *arena, struct manifest *manifest) {
+  const char *quality = json_string_value(json_object_get(root, "quality"));
+  const char *name = json_string_value(json_object_get(root, "experiment"));
+  json_t *cells = json_object_get(root, "cells");
+  if (!quality || !name || !json_is_array(cells)) return false;
+  int n = (int)json_array_size(cells);
+  *manifest = (struct manifest){arena_string(arena, name, (ptrdiff_t)strlen(name)),
+                                arena_string(arena, quality, (ptrdiff_t)strlen(quality)), n,
+                                arena_new(arena, uint64_t, n), arena_new(arena, uint64_t, n)};
+  for (int c = 0; c < n; c++) {
+    json_t *cell = json_array_get(cells, (size_t)c);
+    if (!read_hex(cell, "scene_hash", &manifest->scene_hash[c]) ||
+        !read_hex(cell, "seed", &manifest->seed[c]))
+      return false;
+  }
+  return true;
+}
+
+static bool read_manifest(const char *path, struct arena *arena, struct manifest *manifest,
+                          struct problem *problem) {
   json_error_t error;
   json_t *root = json_load_file(path, 0, &error);
   if (!root) {
@@ -162,30 +243,32 @@ static bool read_manifest(const char *path, struct arena *arena, struct results 
     return problem_at(problem, place, "%s (is this a results directory of photonlab run?)",
                       error.text);
   }
-  const char *text = json_string_value(json_object_get(root, "quality"));
-  const char *name = json_string_value(json_object_get(root, "experiment"));
-  json_t *cells = json_object_get(root, "cells");
-  size_t n = json_array_size(cells);
-  results->scene_hash = arena_new(arena, uint64_t, (ptrdiff_t)n);
-  bool ok = text && name && json_is_array(cells);
-  for (size_t c = 0; c < n && ok; c++) {
-    const char *hash = json_string_value(json_object_get(json_array_get(cells, c), "scene_hash"));
-    ok = hash != NULL;
-    if (ok) results->scene_hash[c] = strtoull(hash, NULL, 16);
-  }
-  if (ok) *quality = arena_string(arena, text, (ptrdiff_t)strlen(text));
-  if (ok) *file = arena_format(arena, "%s/%s.yaml", results->directory, name);
+  bool ok = take_manifest(root, arena, manifest);
   json_decref(root);
   return ok || problem_set(problem, "%s: not a manifest of photonlab run", path);
+}
+
+static bool read_experiment(const char *directory, const struct manifest *manifest,
+                            struct arena *arena, struct experiment *experiment,
+                            struct problem *problem) {
+  const char *path = arena_format(arena, "%s/%s.yaml", directory, manifest->name);
+  if (!experiment_read(path, manifest->quality, arena, experiment, problem)) return false;
+  if (experiment->n_cells != manifest->n_cells)
+    return problem_set(problem, "%s: has %d cells, %d were run; it must not be edited", path,
+                       experiment->n_cells, manifest->n_cells);
+  for (int c = 0; c < experiment->n_cells; c++) experiment->cell[c].seed = manifest->seed[c];
+  return true;
 }
 
 bool results_read(const char *directory, struct arena *arena, struct results *results,
                   struct problem *problem) {
   *results = (struct results){.directory = directory};
-  const char *quality, *file;
-  return read_manifest(arena_format(arena, "%s/manifest.json", directory), arena, results, &quality,
-                       &file, problem) &&
-         experiment_read(file, quality, arena, &results->experiment, problem) &&
-         read_probes(arena_format(arena, "%s/probes.csv", directory), arena, results, problem) &&
+  struct manifest manifest = {0};
+  if (!read_manifest(arena_format(arena, "%s/manifest.json", directory), arena, &manifest,
+                     problem) ||
+      !read_experiment(directory, &manifest, arena, &results->experiment, problem))
+    return false;
+  results->scene_hash = manifest.scene_hash;
+  return read_probes(arena_format(arena, "%s/probes.csv", directory), arena, results, problem) &&
          read_log(arena_format(arena, "%s/log.csv", directory), arena, results, problem);
 }

@@ -28,7 +28,7 @@ struct series {
   struct moments *iteration; // [n_iterations]: iteration i at i - 1
   int n_checkpoints;
   uint64_t *checkpoint;    // N
-  struct moments *average; // of the running average after N iterations: n, mean, m2 (m3, m4 zero)
+  struct moments *average; // of the running average after N iterations
 };
 
 struct results {

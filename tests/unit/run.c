@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 #include <ftw.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -118,6 +119,100 @@ static void the_default_probes_are_the_centres_of_nine_parts(void **state) {
   }
 }
 
+// ---- reading back ----
+
+// What write_text wrote is `text` with the first `old` replaced.
+static void replace_in(const char *path, const char *old, const char *new) {
+  char *text = read_text(path), *at = strstr(text, old);
+  if (!at) fail_msg("there is no '%s' in %s", old, path);
+  *at = 0;
+  write_text(path, arena_format(&arena, "%s%s%s", text, new, at + strlen(old)));
+}
+
+static void reading_says(const char *directory, const char *says) {
+  struct results results;
+  struct problem problem = {0};
+  assert_false(results_read(directory, &arena, &results, &problem));
+  if (!strstr(problem.text, says)) fail_msg("expected '%s' in '%s'", says, problem.text);
+}
+
+// The moments over all runs of one group without any file: what must come back, bit for bit.
+static void what_is_read_back_is_what_was_measured(void **state) {
+  (void)state;
+  struct experiment experiment = experiment_of("back", BEAM "kernel: [box, gaussian]\n");
+  struct plan plan;
+  struct problem problem = {0};
+  assert_true(plan_make(&experiment, quiet, &arena, &plan, &problem));
+  struct moments *expected = arena_new(&arena, struct moments, plan.group[0].width);
+  block_compute(&plan.group[0], 0, expected, arena);
+  run_into(&experiment, path_in("back"));
+  struct results results = results_of(path_in("back"));
+  assert_int_equal(results.n_series, 2);
+  for (int e = 0; e < 2; e++) {
+    const struct series *series = &results.series[e];
+    const struct moments *at = expected + plan_series(&plan.group[0], e, 0);
+    assert_int_equal(series->cell, e);
+    assert_int_equal(series->n_checkpoints, 4);
+    assert_memory_equal(series->iteration, at, 4 * sizeof *at);
+    assert_memory_equal(series->average, at + 4, 4 * sizeof *at);
+    assert_int_equal(series->checkpoint[3], 4);
+  }
+  assert_true(results.scene_hash[1] == plan.scene[0].scene.hash);
+}
+
+static void the_seed_of_the_command_line_is_read_back(void **state) {
+  (void)state;
+  struct experiment experiment = experiment_of("seed", BEAM);
+  experiment.cell[0].seed = UINT64_C(0xfedcba9876543210);
+  run_into(&experiment, path_in("seed"));
+  assert_true(results_of(path_in("seed")).experiment.cell[0].seed == UINT64_C(0xfedcba9876543210));
+}
+
+static void a_damaged_log_is_refused_with_its_line(void **state) {
+  (void)state;
+  static const struct {
+    const char *old, *new, *says;
+  } damage[] = {
+      {"iteration,2,", "iteration,nan,", "log.csv:3:1: a number is out of range"},
+      {"iteration,2,", "iteration,2.5,", "log.csv:3:1: a number is out of range"},
+      {"iteration,2,", "iteration,5,", "log.csv:3:1: a number is out of range"},
+      {"iteration,2,", "iteration,1,", "log.csv:3:1: an iteration stands twice"},
+      {"iteration,2,", "iteratiom,2,", "log.csv:3:1: a row of an unknown series"},
+      {"iteration,2,", "iteration,2,2,", "log.csv:3:1: a row has not as many fields"},
+      {"iteration,2,", "iteration", "log.csv:3:1: a row has not as many fields"},
+      {"average,2,", "average,1,", "log.csv:7:1: averages do not ascend"},
+      {"average,3,", "iteration,3,", "log.csv:8:1: an iteration stands twice"},
+      {"scene,", "scenes,", "log.csv:1:1: unexpected columns"},
+  };
+  run("damage", BEAM);
+  const char *path = path_in("damage/log.csv");
+  char *whole = read_text(path);
+  for (size_t k = 0; k < sizeof damage / sizeof *damage; k++) {
+    write_text(path, whole);
+    replace_in(path, damage[k].old, damage[k].new);
+    reading_says(path_in("damage"), damage[k].says);
+  }
+}
+
+static void a_log_cut_anywhere_is_refused(void **state) {
+  (void)state;
+  run("cut", BEAM);
+  const char *path = path_in("cut/log.csv");
+  char *whole = read_text(path);
+  for (size_t length = strlen(whole) - 1; length > 0; length--) {
+    whole[length] = 0;
+    write_text(path, whole);
+    reading_says(path_in("cut"), "damaged");
+  }
+}
+
+static void an_edited_experiment_is_refused(void **state) {
+  (void)state;
+  run("edited", BEAM);
+  replace_in(path_in("edited/edited.yaml"), "radius: 0.5", "radius: [0.5, 0.6]");
+  reading_says(path_in("edited"), "has 2 cells, 1 were run");
+}
+
 // ---- checkpoints of the log ----
 
 static void averages_are_logged_ten_times_a_decade_and_at_the_end(void **state) {
@@ -178,6 +273,11 @@ int main(void) {
       cmocka_unit_test(cells_that_share_photons_keep_references_of_their_own),
       cmocka_unit_test(one_run_of_one_iteration_is_an_experiment),
       cmocka_unit_test(the_default_probes_are_the_centres_of_nine_parts),
+      cmocka_unit_test(what_is_read_back_is_what_was_measured),
+      cmocka_unit_test(the_seed_of_the_command_line_is_read_back),
+      cmocka_unit_test(a_damaged_log_is_refused_with_its_line),
+      cmocka_unit_test(a_log_cut_anywhere_is_refused),
+      cmocka_unit_test(an_edited_experiment_is_refused),
       cmocka_unit_test(averages_are_logged_ten_times_a_decade_and_at_the_end),
       cmocka_unit_test(a_probe_that_sees_nothing_is_refused_before_anything_is_made),
   };
