@@ -51,8 +51,17 @@ struct mesh {
   struct scene scene;
 };
 
+// Gives an arena, or takes one back to give it again: to reserve one is dear under asan.
+static inline struct arena mesh_memory(const struct arena *back) {
+  static struct arena free[8];
+  static int n;
+  if (back && n < 8) free[n++] = *back;
+  if (back) return *back;
+  return n ? free[--n] : arena_reserve();
+}
+
 static inline struct mesh mesh_new(int shapes, int primitives) {
-  struct mesh m = {.start = arena_reserve()};
+  struct mesh m = {.start = mesh_memory(NULL)};
   m.arena = m.start;
   m.scene.position = arena_alloc(&m.arena, 3 * primitives, sizeof(float[3]), alignof(float));
   m.scene.triangle = arena_alloc(&m.arena, primitives, sizeof(uint32_t[3]), alignof(uint32_t));
@@ -62,7 +71,7 @@ static inline struct mesh mesh_new(int shapes, int primitives) {
   return m;
 }
 
-static inline void mesh_release(struct mesh *m) { arena_release(m->start); }
+static inline void mesh_release(struct mesh *m) { mesh_memory(&m->start); }
 
 static inline void mesh_add_shape(struct mesh *m, const struct shape_type *type) {
   struct scene *s = &m->scene;
