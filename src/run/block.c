@@ -1,7 +1,10 @@
+#define _GNU_SOURCE // opendir, rmdir
 #include "run/block.h"
 
 #include "base/file.h"
 
+#include <dirent.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -84,8 +87,9 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
 // ---- files ----
 
 struct block_header {
-  char magic[8]; // also tells the byte order of what follows apart: numbers are native
-  uint64_t fingerprint, block, width, check;
+  char magic[8];
+  uint64_t fingerprint, block, width,
+      check; // native: on a machine of the other byte order no match
 };
 
 static struct block_header header_of(const struct group_plan *plan, uint64_t block,
@@ -95,61 +99,71 @@ static struct block_header header_of(const struct group_plan *plan, uint64_t blo
                                XXH64(moments, bytes, plan->fingerprint)};
 }
 
-static char *block_path(const struct group_plan *plan, uint64_t block, const char *directory,
+const char *block_folder(const struct plan *plan, const char *directory, struct arena *arena) {
+  return arena_format(arena, "%s/blocks/%016" PRIx64, directory, plan->fingerprint);
+}
+
+static char *block_path(const struct group_plan *plan, uint64_t block, const char *folder,
                         struct arena *arena) {
-  return arena_format(arena, "%s/blocks/group-%03d-block-%06llu", directory, plan->number,
-                      (unsigned long long)block);
+  return arena_format(arena, "%s/group-%03d-block-%06" PRIu64, folder, plan->number, block);
 }
 
 // The moments of a whole and matching file, else NULL.
-static struct moments *block_load(const struct group_plan *plan, uint64_t block,
-                                  const char *directory, struct arena *arena) {
+static struct moments *block_load(const struct group_plan *plan, uint64_t block, const char *folder,
+                                  struct block_time *time, struct arena *arena) {
   struct text text;
   struct problem ignored = {0};
-  char *path = block_path(plan, block, directory, arena);
-  if (!file_exists(path) || !file_read(path, arena, &text, &ignored)) return NULL;
-  size_t bytes = (size_t)plan->width * sizeof(struct moments);
   struct block_header header;
-  if ((size_t)text.length != sizeof header + bytes) return NULL;
+  size_t bytes = (size_t)plan->width * sizeof(struct moments);
+  if (!file_read(block_path(plan, block, folder, arena), arena, &text, &ignored)) return NULL;
+  if ((size_t)text.length != sizeof header + sizeof *time + bytes) return NULL;
   struct moments *moments = arena_new(arena, struct moments, plan->width);
   memcpy(&header, text.data, sizeof header);
-  memcpy(moments, text.data + sizeof header, bytes);
+  memcpy(time, text.data + sizeof header, sizeof *time);
+  memcpy(moments, text.data + sizeof header + sizeof *time, bytes);
   struct block_header expected = header_of(plan, block, moments);
   return memcmp(&header, &expected, sizeof header) == 0 ? moments : NULL;
 }
 
-bool block_exists(const struct group_plan *plan, uint64_t block, const char *directory,
-                  struct arena scratch) {
-  return block_load(plan, block, directory, &scratch) != NULL;
+bool block_exists(const struct group_plan *plan, uint64_t block, const char *folder,
+                  struct block_time *time, struct arena scratch) {
+  return block_load(plan, block, folder, time, &scratch) != NULL;
 }
 
-void block_write(const struct group_plan *plan, uint64_t block, const char *directory,
-                 const struct moments *moments, struct arena scratch) {
+void block_write(const struct group_plan *plan, uint64_t block, const char *folder,
+                 const struct moments *moments, struct block_time time, struct arena scratch) {
   struct problem problem = {0};
   struct file_out out;
   struct block_header header = header_of(plan, block, moments);
-  if (!file_begin(&out, block_path(plan, block, directory, &scratch), &problem))
+  if (!file_begin(&out, block_path(plan, block, folder, &scratch), &problem))
     die("%s", problem.text);
   fwrite(&header, sizeof header, 1, out.stream);
+  fwrite(&time, sizeof time, 1, out.stream);
   fwrite(moments, sizeof *moments, (size_t)plan->width, out.stream);
   if (!file_commit(&out, &problem)) die("%s", problem.text);
 }
 
-void block_remove(const struct group_plan *plan, uint64_t block, const char *directory,
-                  struct arena scratch) {
-  unlink(block_path(plan, block, directory, &scratch));
+bool block_remove_all(const struct plan *plan, const char *directory, struct arena scratch) {
+  const char *folder = block_folder(plan, directory, &scratch);
+  DIR *list = opendir(folder);
+  for (struct dirent *entry; list && (entry = readdir(list));)
+    unlink(arena_format(&scratch, "%s/%s", folder, entry->d_name)); // not "." and "..": folders
+  if (list) closedir(list);
+  rmdir(folder);
+  return rmdir(arena_format(&scratch, "%s/blocks", directory)) == 0;
 }
 
-void block_merge(const struct group_plan *plan, const char *directory, struct moments *out,
+void block_merge(const struct group_plan *plan, const char *folder, struct moments *out,
                  struct arena scratch) {
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
   for (uint64_t block = 0; block < plan->n_blocks; block++) {
     struct arena file = scratch; // given back after each block
-    struct moments *loaded = block_load(plan, block, directory, &file);
+    struct block_time ignored;
+    struct moments *loaded = block_load(plan, block, folder, &ignored, &file);
     if (!loaded)
-      die("%s: block %llu of group %d has gone while the experiment ran", directory,
-          (unsigned long long)block, plan->number);
+      die("%s: block %" PRIu64 " of group %d has gone while the experiment ran", folder, block,
+          plan->number);
     memcpy(leaf, loaded, (size_t)plan->width * sizeof *leaf);
     moments_tree_push(&tree, leaf, &scratch);
   }

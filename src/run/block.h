@@ -9,17 +9,28 @@
 void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
                    struct arena scratch);
 
-// The file of a block in a results directory. A file of another fingerprint, or a damaged one, is
-// as good as none. Writing dies when the disk fails.
-bool block_exists(const struct group_plan *, uint64_t block, const char *directory,
-                  struct arena scratch);
-void block_write(const struct group_plan *, uint64_t block, const char *directory,
-                 const struct moments *, struct arena scratch);
-void block_remove(const struct group_plan *, uint64_t block, const char *directory,
-                  struct arena scratch);
+// What a block took; not part of any result.
+struct block_time {
+  double wall_s, cpu_s;
+};
+
+// Blocks of a plan are files in DIRECTORY/blocks/FINGERPRINT, so that the unfinished work of
+// another experiment or version in the same directory is never written over.
+const char *block_folder(const struct plan *, const char *directory, struct arena *);
+
+// The file of a block in that folder. A file of another fingerprint, or a damaged one, is as good
+// as none. Writing dies when the disk fails.
+bool block_exists(const struct group_plan *, uint64_t block, const char *folder,
+                  struct block_time *, struct arena scratch);
+void block_write(const struct group_plan *, uint64_t block, const char *folder,
+                 const struct moments *, struct block_time, struct arena scratch);
+
+// Removes the folder of a finished plan and all in it, and DIRECTORY/blocks if it held no other;
+// returns whether it did.
+bool block_remove_all(const struct plan *, const char *directory, struct arena scratch);
 
 // Merges all blocks of a group: moments over all its runs.
-void block_merge(const struct group_plan *, const char *directory, struct moments *out,
+void block_merge(const struct group_plan *, const char *folder, struct moments *out,
                  struct arena scratch);
 
 #endif

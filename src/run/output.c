@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // rmdir
 #include "run/output.h"
 
 #include "base/file.h"
@@ -11,7 +10,6 @@
 #include <inttypes.h>
 #include <jansson.h>
 #include <string.h>
-#include <unistd.h>
 
 static char *path_of(const char *directory, const char *name, struct arena *arena) {
   return arena_format(arena, "%s/%s", directory, name);
@@ -38,16 +36,17 @@ bool output_is_complete(const struct plan *plan, const char *directory, struct a
 bool output_set_aside(const struct plan *plan, const char *directory, struct arena scratch,
                       struct problem *problem) {
   if (!file_exists(path_of(directory, "manifest.json", &scratch))) return true;
-  for (int k = 1;; k++) {
-    char *aside = arena_format(&scratch, "%s.%d", directory, k);
-    if (file_exists(aside)) continue;
-    if (rename(directory, aside) != 0)
-      return problem_set(problem, "%s: holds other results and cannot be renamed to %s: %s",
-                         directory, aside, strerror(errno));
-    if (!plan->options.quiet)
-      fprintf(stderr, "photonlab: %s held other results; they are now in %s\n", directory, aside);
-    return true;
-  }
+  int k = 1;
+  while (file_exists(arena_format(&scratch, "%s.%d", directory, k))) k++;
+  char *aside = arena_format(&scratch, "%s.%d", directory, k);
+  if (rename(directory, aside) != 0)
+    return problem_set(problem, "%s: holds other results and cannot be renamed to %s: %s",
+                       directory, aside, strerror(errno));
+  if (!plan->options.quiet)
+    fprintf(stderr, "photonlab: %s held other results; they are now in %s\n", directory, aside);
+  if (!file_make_directory(directory, problem)) return false;
+  rename(path_of(aside, "blocks", &scratch), path_of(directory, "blocks", &scratch));
+  return true;
 }
 
 // ---- log.csv and images ----
@@ -119,7 +118,7 @@ static bool write_logs(const struct outputs *outputs, struct arena scratch,
     const struct group_plan *group = &plan->group[g];
     struct arena own = scratch;
     struct moments *moments = arena_new(&own, struct moments, group->width);
-    block_merge(group, outputs->directory, moments, own);
+    block_merge(group, block_folder(plan, outputs->directory, &own), moments, own);
     write_group_log(log.stream, plan, group, moments);
     if (!write_images(outputs, group, moments, own, problem)) {
       file_abandon(&log);
@@ -150,11 +149,16 @@ static bool write_timing(const struct outputs *outputs, struct arena scratch,
   struct file_out out;
   if (!file_begin(&out, path_of(outputs->directory, "timing.csv", &scratch), problem)) return false;
   fputs("group,block,scene,photons,iterations,wall_s,cpu_s\n", out.stream);
-  for (int k = 0; k < outputs->n_timings; k++) {
-    const struct timing *t = &outputs->timing[k];
-    const struct cell *cell = outputs->plan->group[t->group].cell;
-    fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%.6f,%.6f\n", t->group, t->block,
-            cell->scene, cell->photons, cell->iterations, t->wall_s, t->cpu_s);
+  const char *folder = block_folder(outputs->plan, outputs->directory, &scratch);
+  for (int g = 0; g < outputs->plan->n_groups; g++) {
+    const struct group_plan *group = &outputs->plan->group[g];
+    const struct cell *cell = group->cell;
+    for (uint64_t b = 0; b < group->n_blocks; b++) {
+      struct block_time time = {0};
+      block_exists(group, b, folder, &time, scratch);
+      fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%.6f,%.6f\n", g, b,
+              cell->scene, cell->photons, cell->iterations, time.wall_s, time.cpu_s);
+    }
   }
   return file_commit(&out, problem);
 }
@@ -243,9 +247,9 @@ bool output_write(const struct outputs *outputs, struct arena scratch, struct pr
       !write_logs(outputs, scratch, problem) || !write_timing(outputs, scratch, problem) ||
       !write_manifest(outputs, scratch, problem))
     return false;
-  for (int g = 0; g < outputs->plan->n_groups; g++)
-    for (uint64_t b = 0; b < outputs->plan->group[g].n_blocks; b++)
-      block_remove(&outputs->plan->group[g], b, outputs->directory, scratch);
-  rmdir(path_of(outputs->directory, "blocks", &scratch));
+  if (!block_remove_all(outputs->plan, outputs->directory, scratch) &&
+      !outputs->plan->options.quiet)
+    fprintf(stderr, "photonlab: %s/blocks keeps what another experiment or version began\n",
+            outputs->directory);
   return true;
 }

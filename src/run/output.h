@@ -4,24 +4,17 @@
 
 #include "run/plan.h"
 
-struct timing {
-  int group;
-  uint64_t block;
-  double wall_s, cpu_s;
-};
-
 struct outputs {
   const struct plan *plan;
   struct probe *const *probe; // by cell
-  const struct timing *timing;
-  int n_timings;
   const char *directory;
 };
 
 // Whether the directory holds the finished results of exactly this plan.
 bool output_is_complete(const struct plan *, const char *directory, struct arena scratch);
 
-// Finished results of something else are renamed, not overwritten: DIR.1, DIR.2, ...
+// Finished results of something else are renamed, not overwritten: DIR.1, DIR.2, ... Unfinished
+// blocks (run/block.h) stay. `directory` has no slash at its end.
 bool output_set_aside(const struct plan *, const char *directory, struct arena scratch,
                       struct problem *);
 

@@ -5,9 +5,13 @@
 #include "numeric/elementary.h"
 #include "walk/eye.h"
 
-#include <stdio.h>
+#include <omp.h>
 #include <string.h>
 #include <xxhash.h>
+
+int plan_threads(const struct run_options *options) {
+  return options->threads ? options->threads : omp_get_max_threads();
+}
 
 uint64_t *plan_checkpoints(uint64_t iterations, int *count, struct arena *arena) {
   struct {

@@ -14,6 +14,8 @@ struct run_options {
   unsigned skip_off; // bits of enum skip
 };
 
+int plan_threads(const struct run_options *);
+
 struct loaded_scene {
   const char *path;
   struct scene scene;
@@ -60,7 +62,7 @@ long plan_image(const struct group_plan *, int estimator, int image);
 // What the probes of a group see (reference NAN).
 void plan_probes(const struct group_plan *, struct probe *, struct arena scratch);
 
-// N at which running averages are logged: 10 a decade, every one up to 10, and the last.
+// N at which running averages are logged: 10 a decade (1 2 3 4 5 6 8 10 13 ...), and the last.
 uint64_t *plan_checkpoints(uint64_t iterations, int *count, struct arena *);
 
 #endif

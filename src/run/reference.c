@@ -6,7 +6,6 @@
 #include "run/interrupt.h"
 #include "run/progress.h"
 
-#include <omp.h>
 #include <string.h>
 #include <xxhash.h>
 
@@ -138,7 +137,7 @@ static bool cache_write(const char *path, const struct group_plan *plan, const s
 static bool refine(struct reference *reference, const struct run_options *options,
                    struct moments *root, struct arena *arena) {
   double target = reference->target_se;
-  int threads = options->threads ? options->threads : omp_get_max_threads();
+  int threads = plan_threads(options);
   struct progress progress = progress_begin("reference", 1, 0, options->quiet);
   for (uint64_t done = 0, next = FIRST_UNITS;; done = next, next *= 2) {
     compute_round(reference, done, next, threads, arena);

@@ -44,7 +44,7 @@ bool render_image(const struct integrator_type *integrator, const struct measure
                   uint64_t iterations, struct run_options options, struct arena *arena,
                   struct image *image) {
   assert(integrator->independent);
-  int threads = options.threads ? options.threads : omp_get_max_threads();
+  int threads = plan_threads(&options);
   int round = threads * ITERATIONS_PER_THREAD;
   long size = (long)measure->n_points * measure->features.n_channels;
   struct moments *moments = arena_new(arena, struct moments, size);

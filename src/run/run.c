@@ -8,7 +8,6 @@
 #include "run/progress.h"
 #include "run/reference.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -57,7 +56,7 @@ static int unit_order(const void *a, const void *b) {
 }
 
 // What is still to be done, the largest first; *done is the work that files already hold.
-static struct units units_left(const struct plan *plan, const char *directory, double *total,
+static struct units units_left(const struct plan *plan, const char *folder, double *total,
                                double *done, struct arena *arena) {
   struct units units = {0};
   for (int g = 0; g < plan->n_groups; g++) {
@@ -65,7 +64,8 @@ static struct units units_left(const struct plan *plan, const char *directory, d
     for (uint64_t b = 0; b < plan->group[g].n_blocks; b++) {
       double work = work_of(&plan->group[g], run_s, b);
       *total += work;
-      if (block_exists(&plan->group[g], b, directory, *arena))
+      struct block_time ignored;
+      if (block_exists(&plan->group[g], b, folder, &ignored, *arena))
         *done += work;
       else
         *arena_push(arena, &units) = (struct unit){g, b, work};
@@ -81,30 +81,26 @@ static double thread_cpu_s(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static struct timing compute(const struct group_plan *plan, const struct unit *unit,
-                             const char *directory, struct arena scratch) {
+static void compute(const struct group_plan *plan, uint64_t block, const char *folder,
+                    struct arena scratch) {
   double wall = progress_clock_s(), cpu = thread_cpu_s();
   struct moments *moments = arena_new(&scratch, struct moments, plan->width);
-  block_compute(plan, unit->block, moments, scratch);
-  block_write(plan, unit->block, directory, moments, scratch);
-  return (struct timing){unit->group, unit->block, progress_clock_s() - wall, thread_cpu_s() - cpu};
-}
-
-static int thread_count(const struct run_options *options) {
-  return options->threads ? options->threads : omp_get_max_threads();
+  block_compute(plan, block, moments, scratch);
+  struct block_time time = {progress_clock_s() - wall, thread_cpu_s() - cpu};
+  block_write(plan, block, folder, moments, time, scratch);
 }
 
 // All units on all threads. Each writes its own file, so there is nothing to share but the queue.
-static void compute_all(const struct plan *plan, const char *directory, const struct units *units,
-                        struct progress *progress, struct timing *timing) {
-#pragma omp parallel num_threads(thread_count(&plan->options))
+static void compute_all(const struct plan *plan, const char *folder, const struct units *units,
+                        struct progress *progress) {
+#pragma omp parallel num_threads(plan_threads(&plan->options))
   {
     struct arena scratch = arena_reserve();
 #pragma omp for schedule(dynamic, 1)
     for (ptrdiff_t k = 0; k < units->count; k++) {
       if (interrupt_signal()) continue;
       const struct unit *unit = &units->item[k];
-      timing[k] = compute(&plan->group[unit->group], unit, directory, scratch);
+      compute(&plan->group[unit->group], unit->block, folder, scratch);
       progress_advance(progress, unit->work);
     }
     arena_release(scratch);
@@ -137,33 +133,46 @@ static enum run_outcome interrupted(const char *directory) {
   return RUN_INTERRUPTED;
 }
 
-enum run_outcome run_experiment(const struct experiment *experiment, const char *directory,
+// "results/alpha/" -> "results/alpha".
+static const char *without_slashes(const char *path, struct arena *arena) {
+  ptrdiff_t length = (ptrdiff_t)strlen(path);
+  while (length > 1 && path[length - 1] == '/') length--;
+  return arena_string(arena, path, length);
+}
+
+// All blocks that are missing. False: interrupted.
+static bool make_blocks(const struct plan *plan, const char *folder, struct arena *arena) {
+  double total = 0, done = 0;
+  const char *name = plan->experiment->name;
+  struct units units = units_left(plan, folder, &total, &done, arena);
+  int threads = plan_threads(&plan->options);
+  if (!plan->options.quiet)
+    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", name, total - done,
+            (total - done) / threads, threads);
+  struct progress progress = progress_begin(name, total, done, plan->options.quiet);
+  compute_all(plan, folder, &units, &progress);
+  progress_end(&progress);
+  return !interrupt_signal();
+}
+
+enum run_outcome run_experiment(const struct experiment *experiment, const char *path,
                                 struct run_options options, struct arena *arena,
                                 struct problem *problem) {
   struct plan plan;
+  const char *directory = without_slashes(path, arena);
   if (!plan_make(experiment, options, arena, &plan, problem)) return RUN_FAILED;
   if (output_is_complete(&plan, directory, *arena)) {
     if (!options.quiet) fprintf(stderr, "photonlab: %s is up to date\n", directory);
     return RUN_DONE;
   }
-  if (!output_set_aside(&plan, directory, *arena, problem) ||
-      !file_make_directory(arena_format(arena, "%s/blocks", directory), problem))
+  const char *folder = block_folder(&plan, directory, arena);
+  if (!output_set_aside(&plan, directory, *arena, problem) || !file_make_directory(folder, problem))
     return RUN_FAILED;
   interrupt_install();
   struct probe **probe = arena_new(arena, struct probe *, experiment->n_cells);
   if (!probes_make(&plan, directory, probe, arena, problem))
     return problem->text[0] ? RUN_FAILED : interrupted(directory);
-  double total = 0, done = 0;
-  struct units units = units_left(&plan, directory, &total, &done, arena);
-  struct timing *timing = arena_new(arena, struct timing, units.count);
-  int threads = thread_count(&options);
-  if (!options.quiet)
-    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", experiment->name,
-            total - done, (total - done) / threads, threads);
-  struct progress progress = progress_begin(experiment->name, total, done, options.quiet);
-  compute_all(&plan, directory, &units, &progress, timing);
-  progress_end(&progress);
-  if (interrupt_signal()) return interrupted(directory);
-  struct outputs outputs = {&plan, probe, timing, (int)units.count, directory};
+  if (!make_blocks(&plan, folder, arena)) return interrupted(directory);
+  struct outputs outputs = {&plan, probe, directory};
   return output_write(&outputs, *arena, problem) ? RUN_DONE : RUN_FAILED;
 }
