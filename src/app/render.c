@@ -1,7 +1,7 @@
 // photonlab render: a picture of a scene by one integrator.
 #include "run/render.h"
 #include "app/cli.h"
-#include "density/grid.h"
+#include "base/file.h"
 #include "run/interrupt.h"
 
 #include <inttypes.h>
@@ -41,38 +41,26 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   return cli_apply(&said, cell, problem) && cli_apply(cli, cell, problem);
 }
 
-static bool check(const struct cell *cell, const struct scene *scene, struct problem *problem) {
-  if (!cell->integrator->photons) return true;
-  if (isnan(cell->radius))
+static bool measure_film(const struct cell *cell, const struct scene *scene, const struct cli *cli,
+                         struct measurement *measure, struct problem *problem) {
+  if (cell->integrator->photons && isnan(cell->radius))
     return problem_set(problem, "%s: integrator %s needs a radius, say --radius R (scene units)",
                        scene->path, cell->integrator->name);
-  double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
-  return grid_radius_is_resolved(scene->bounds, last, problem);
+  struct estimator *estimator = arena_new(cli->arena, struct estimator, 1);
+  struct bvh *bvh = bvh_build(scene, (struct bvh_options){0}, cli->arena);
+  *measure = plan_measurement(cell, scene, bvh, cli->options.skip_off);
+  measure->pixel = plan_film(scene, &measure->n_points, cli->arena, problem);
+  measure->estimator = estimator;
+  measure->n_estimators = 1;
+  return measure->pixel && plan_estimator(cell, scene, estimator, problem);
 }
 
-static struct measurement measure_film(const struct cell *cell, const struct scene *scene,
-                                       const struct bvh *bvh, struct estimator *estimator,
-                                       unsigned skip_off, struct arena *arena) {
-  int width = scene->camera.width, n = width * scene->camera.height;
-  struct pixel *pixel = arena_new(arena, struct pixel, n);
-  for (int j = 0; j < n; j++) pixel[j] = (struct pixel){j % width, j / width};
-  *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
-  struct measurement measure = {.scene = scene,
-                                .bvh = bvh,
-                                .features = scene_features(scene),
-                                .pixel = pixel,
-                                .n_points = n,
-                                .n_replicas = 1,
-                                .footprint = cell->footprint,
-                                .nee = cell->direct == DIRECT_NEE,
-                                .depth = cell->depth,
-                                .n_emitted = cell->photons,
-                                .seed = cell->seed,
-                                .estimator = estimator,
-                                .n_estimators = 1,
-                                .skip_off = skip_off};
-  if (skip_off & SKIP_GRAY) measure.features.n_channels = 3;
-  return measure;
+// Found out before the picture is computed, not after.
+static bool output_can_be_written(const char *path, struct problem *problem) {
+  struct file_out out;
+  if (!image_can_write(path, problem) || !file_begin(&out, path, problem)) return false;
+  file_abandon(&out);
+  return true;
 }
 
 static char *manifest_of(const struct cell *cell, const struct scene *scene, struct arena *arena) {
@@ -92,13 +80,11 @@ static int render(struct cli *cli, struct problem *problem) {
   if (!scene_read(cli->argument, cli->arena, &scene, problem)) return 1;
   const char *output = cli->output ? cli->output : scene.settings.filename;
   if (!output) return problem_set(problem, "say where the picture goes: -o FILE.exr"), 1;
-  if (!image_can_write(output, problem) || !cell_read(cli, &scene, &cell, problem) ||
-      !check(&cell, &scene, problem))
+  struct measurement measure;
+  if (!cell_read(cli, &scene, &cell, problem) ||
+      !measure_film(&cell, &scene, cli, &measure, problem) ||
+      !output_can_be_written(output, problem))
     return 1;
-  struct bvh *bvh = bvh_build(&scene, (struct bvh_options){0}, cli->arena);
-  struct estimator estimator;
-  struct measurement measure =
-      measure_film(&cell, &scene, bvh, &estimator, cli->options.skip_off, cli->arena);
   struct image image;
   if (!render_image(cell.integrator, &measure, cell.iterations, cli->options, cli->arena, &image)) {
     fprintf(stderr, "photonlab: interrupted, no picture was written\n");

@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/version.h"
-#include "image/image.h"
 #include "log/log.h"
 #include "run/block.h"
+#include "run/picture.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -64,21 +64,6 @@ static void write_group_log(FILE *out, const struct plan *plan, const struct gro
     }
 }
 
-static struct image moment_image(const struct group_plan *group, const struct moments *moments,
-                                 struct arena *arena) {
-  static const char *const names[] = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
-  const struct camera *camera = &group->loaded->scene.camera;
-  struct image image = image_new(camera->width, camera->height, 6, names, arena);
-  int n_channels = group->measure.features.n_channels;
-  for (long j = 0; j < group->measure.n_points; j++)
-    for (int c = 0; c < 3; c++) {
-      struct moments m = moments[j * n_channels + (n_channels == 3 ? c : 0)];
-      image.plane[c][j] = (float)m.mean;
-      image.plane[3 + c][j] = m.n > 1 ? (float)moments_variance(m) : NAN;
-    }
-  return image;
-}
-
 // images/SCENE-cellCCC-N.exr: mean over runs of the running average after N iterations, and its
 // variance over runs.
 static bool write_images(const struct outputs *outputs, const struct group_plan *group,
@@ -91,7 +76,8 @@ static bool write_images(const struct outputs *outputs, const struct group_plan 
     for (int m = 0; m < group->cell->n_images; m++) {
       struct arena own = scratch;
       const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];
-      struct image image = moment_image(group, moments + plan_image(group, e, m), &own);
+      struct image image =
+          picture_of(&group->measure, moments + plan_image(group, e, m), moments_variance, &own);
       image.manifest = arena_format(
           &own,
           "{\"experiment\": \"%s\", \"cell\": %d, \"scene\": \"%s\", \"integrator\": \"%s\", "

@@ -5,6 +5,7 @@
 #include "numeric/elementary.h"
 #include "walk/eye.h"
 
+#include <limits.h>
 #include <omp.h>
 #include <string.h>
 #include <xxhash.h>
@@ -41,6 +42,44 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
   return loaded;
 }
 
+struct measurement plan_measurement(const struct cell *cell, const struct scene *scene,
+                                    const struct bvh *bvh, unsigned skip_off) {
+  struct measurement measure = {.scene = scene,
+                                .bvh = bvh,
+                                .features = scene_features(scene),
+                                .n_replicas = 1,
+                                .footprint = cell->footprint,
+                                .nee = cell->direct == DIRECT_NEE,
+                                .depth = cell->depth,
+                                .n_emitted = cell->photons,
+                                .seed = cell->seed,
+                                .skip_off = skip_off};
+  if (skip_off & SKIP_GRAY) measure.features.n_channels = 3;
+  return measure;
+}
+
+struct pixel *plan_film(const struct scene *scene, int *n_points, struct arena *arena,
+                        struct problem *problem) {
+  int width = scene->camera.width, height = scene->camera.height;
+  if (height > INT_MAX / width) {
+    problem_set(problem, "%s: a film of %d x %d pixels is too large to be computed as a whole",
+                scene->path, width, height);
+    return NULL;
+  }
+  *n_points = width * height;
+  struct pixel *pixel = arena_new(arena, struct pixel, *n_points);
+  for (int j = 0; j < *n_points; j++) pixel[j] = (struct pixel){j % width, j / width};
+  return pixel;
+}
+
+bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
+                    struct problem *problem) {
+  *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
+  if (!cell->integrator->photons) return true;
+  double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
+  return grid_radius_is_resolved(scene->bounds, last, problem);
+}
+
 // The default probes: the centres of a 3x3 partition of the film.
 static struct pixel *probe_grid(const struct camera *camera, struct arena *arena) {
   struct pixel *probe = arena_new(arena, struct pixel, 9);
@@ -64,15 +103,13 @@ static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct pro
   plan->probe_point = arena_new(arena, int, plan->n_probes);
   struct measurement *measure = &plan->measure;
   bool film = plan->images || (measure->skip_off & SKIP_PROBES);
-  measure->n_points = film ? camera->width * camera->height : plan->n_probes;
-  struct pixel *pixel = arena_new(arena, struct pixel, measure->n_points);
-  for (int j = 0; j < measure->n_points; j++)
-    pixel[j] = film ? (struct pixel){j % camera->width, j / camera->width} : plan->probe_pixel[j];
+  measure->n_points = plan->n_probes;
+  measure->pixel = film ? plan_film(&plan->loaded->scene, &measure->n_points, arena, problem)
+                        : plan->probe_pixel;
   for (int p = 0; p < plan->n_probes; p++)
     plan->probe_point[p] =
         film ? plan->probe_pixel[p].y * camera->width + plan->probe_pixel[p].x : p;
-  measure->pixel = pixel;
-  return true;
+  return measure->pixel != NULL;
 }
 
 static bool check_probes_hit(const struct group_plan *plan, struct arena scratch,
@@ -94,11 +131,7 @@ static bool plan_estimators(struct group_plan *plan, const struct experiment *ex
   struct estimator *estimator = arena_new(arena, struct estimator, measure->n_estimators);
   for (int e = 0; e < measure->n_estimators; e++) {
     const struct cell *cell = &experiment->cell[plan->group->cell[e]];
-    estimator[e] = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
-    double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
-    if (cell->integrator->photons &&
-        !grid_radius_is_resolved(plan->loaded->scene.bounds, last, problem))
-      return false;
+    if (!plan_estimator(cell, &plan->loaded->scene, &estimator[e], problem)) return false;
   }
   measure->estimator = estimator;
   return true;
@@ -136,19 +169,7 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
     return problem_set(problem, "%s: the scene has no light, there is nothing to measure",
                        cell->scene_path);
   out->images = cell->n_images > 0;
-  out->measure = (struct measurement){
-      .scene = scene,
-      .bvh = out->loaded->bvh,
-      .features = scene_features(scene),
-      .n_replicas = 1,
-      .footprint = cell->footprint,
-      .nee = cell->direct == DIRECT_NEE,
-      .depth = cell->depth,
-      .n_emitted = cell->photons,
-      .seed = cell->seed,
-      .skip_off = plan->options.skip_off,
-  };
-  if (plan->options.skip_off & SKIP_GRAY) out->measure.features.n_channels = 3;
+  out->measure = plan_measurement(cell, scene, out->loaded->bvh, plan->options.skip_off);
   if (!plan_pixels(out, arena, problem) || !check_probes_hit(out, *arena, problem)) return false;
   if (!plan_estimators(out, plan->experiment, arena, problem)) return false;
   plan_layout(out, arena);

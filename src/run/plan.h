@@ -55,6 +55,16 @@ struct plan {
 bool plan_make(const struct experiment *, struct run_options, struct arena *, struct plan *,
                struct problem *);
 
+// The parts of a measurement that a cell and its scene determine; its points and estimators are
+// left to the caller.
+struct measurement plan_measurement(const struct cell *, const struct scene *, const struct bvh *,
+                                    unsigned skip_off);
+// All pixels of the film, row by row; NULL and a problem if they are too many.
+struct pixel *plan_film(const struct scene *, int *n_points, struct arena *, struct problem *);
+// False and a problem where the scene's coordinates do not resolve the last radius.
+bool plan_estimator(const struct cell *, const struct scene *, struct estimator *,
+                    struct problem *);
+
 // Offsets into the vector.
 long plan_series(const struct group_plan *, int estimator, int probe);
 long plan_image(const struct group_plan *, int estimator, int image);

@@ -1,6 +1,7 @@
 #include "run/render.h"
 
 #include "run/interrupt.h"
+#include "run/picture.h"
 #include "run/progress.h"
 
 #include <assert.h>
@@ -25,27 +26,13 @@ static void push_round(struct moments_tree *tree, const double *frames, int coun
   }
 }
 
-static struct image image_of(const struct measurement *measure, const struct moments *moments,
-                             struct arena *arena) {
-  static const char *const names[] = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
-  const struct camera *camera = &measure->scene->camera;
-  int n_channels = measure->features.n_channels;
-  struct image image = image_new(camera->width, camera->height, 6, names, arena);
-  for (long j = 0; j < measure->n_points; j++)
-    for (int c = 0; c < 3; c++) {
-      struct moments m = moments[j * n_channels + (n_channels == 3 ? c : 0)];
-      image.plane[c][j] = (float)m.mean;
-      image.plane[3 + c][j] = m.n > 1 ? (float)moments_se2(m) : NAN;
-    }
-  return image;
-}
-
 bool render_image(const struct integrator_type *integrator, const struct measurement *measure,
                   uint64_t iterations, struct run_options options, struct arena *arena,
                   struct image *image) {
   assert(integrator->independent);
   int threads = plan_threads(&options);
   int round = threads * ITERATIONS_PER_THREAD;
+  if ((uint64_t)round > iterations) round = (int)iterations;
   long size = (long)measure->n_points * measure->features.n_channels;
   struct moments *moments = arena_new(arena, struct moments, size);
   double *frames = arena_new(arena, double, size *round);
@@ -71,6 +58,6 @@ bool render_image(const struct integrator_type *integrator, const struct measure
   for (int t = 0; t < threads; t++) arena_release(kept[t]);
   if (interrupt_signal()) return false;
   moments_tree_root(&tree, moments);
-  *image = image_of(measure, moments, arena);
+  *image = picture_of(measure, moments, moments_se2, arena);
   return true;
 }

@@ -125,6 +125,8 @@ refuses 'a NaN vertex' 1 'pbrt:[0-9]+:[0-9]+: ' "$photonlab" info \
 refuses 'an empty scene' 1 'no Shape' "$photonlab" info <(echo WorldBegin)
 refuses 'a missing scene file' 1 'none.pbrt' "$photonlab" render "$scratch/none.pbrt" -o "$out.exr"
 refuses 'an unknown image format' 1 'known: .exr' "$photonlab" render scenes/cornell-box.pbrt -o "$out.gif"
+refuses 'a picture in a folder that is not there, before it is rendered' 1 'x.exr: cannot write it' \
+  timeout 5 "$photonlab" render scenes/cornell-box.pbrt --spp 1e6 -o "$scratch/none/x.exr"
 refuses 'an unknown command' 2 "did you mean 'render'" "$photonlab" rendr
 refuses 'an unknown option' 2 "did you mean '--radius'" \
   "$photonlab" render scenes/cornell-box.pbrt --raduis 3

@@ -331,6 +331,18 @@ static void a_probe_that_sees_nothing_is_refused_before_anything_is_made(void **
           "disk.pbrt: probe [0, 1] sees no surface");
 }
 
+static void a_film_of_more_pixels_than_can_be_numbered_is_refused(void **state) {
+  (void)state;
+  write_text(path_in("film.pbrt"),
+             "Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536\n"
+             "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"
+             "LightSource \"point\" \"point3 from\" [0 0 2]\nMaterial \"diffuse\"\n"
+             "Shape \"disk\" \"float radius\" 1\n");
+  char *yaml = arena_format(&arena, "scene: %s\nradius: 0.3\nprobes: [[32768, 32768]]\nimages: 1\n",
+                            path_in("film.pbrt"));
+  refuses("film", yaml, "film of 65536 x 65536 pixels is too large");
+}
+
 // ---- the program ----
 
 static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *at) {
@@ -367,6 +379,7 @@ int main(void) {
       cmocka_unit_test(a_slash_behind_the_directory_changes_nothing),
       cmocka_unit_test(averages_are_logged_ten_times_a_decade_and_at_the_end),
       cmocka_unit_test(a_probe_that_sees_nothing_is_refused_before_anything_is_made),
+      cmocka_unit_test(a_film_of_more_pixels_than_can_be_numbered_is_refused),
   };
   return cmocka_run_group_tests_name("run", tests, make_folder, remove_folder);
 }
