@@ -42,12 +42,16 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----
 
-static bool takes(const struct command *command, const char *option) {
+static bool lists(const char *names, const char *option) {
   size_t length = strlen(option);
-  for (const char *at = command->options; (at = strstr(at, option)); at += length)
-    if ((at == command->options || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
-      return true;
+  for (const char *at = names; (at = strstr(at, option)); at += length)
+    if ((at == names || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return true;
   return false;
+}
+
+// Scripts may give these to any command, also where they change nothing.
+static bool takes(const struct command *command, const char *option) {
+  return lists("seed threads quiet", option) || lists(command->options, option);
 }
 
 static void print_help(void) {
@@ -61,14 +65,15 @@ static void print_help(void) {
 }
 
 static void print_command_help(const struct command *command) {
-  printf("usage: photonlab %s %s [OPTIONS]\n%s\n\n", command->name,
+  printf("usage: photonlab %s%s%s [OPTIONS]\n%s\n\n", command->name, command->argument ? " " : "",
          command->argument ? command->argument : "", command->about);
   for (int k = 0; k < N_OPTIONS; k++) {
     if (!takes(command, options[k].name)) continue;
     char left[64];
     snprintf(left, sizeof left, "--%s%s%s", options[k].name, options[k].value ? " " : "",
              options[k].value ? options[k].value : "");
-    printf("  %-20s %s\n", left, options[k].about);
+    bool matters = lists(command->options, options[k].name);
+    printf("  %-20s %s\n", left, matters ? options[k].about : "accepted, without effect here");
   }
 }
 
@@ -127,15 +132,13 @@ static int read_option(const struct command *command, char **argv, int argc, int
     int n = 0;
     for (int k = 0; k < N_OPTIONS; k++)
       if (takes(command, options[k].name)) names[n++] = options[k].name;
-    const char *hint = suggest_name(name, names, n);
+    const char *hint = suggest_name(arena_string(cli->arena, name, (ptrdiff_t)length), names, n);
     return usage("unknown option '%s'", word, hint ? arena_format(cli->arena, "--%s", hint) : NULL);
   }
   const char *text = name[length] == '=' ? name + length + 1 : NULL;
   if (!option->value && text) return usage("option '%s' takes no value", word, NULL);
-  if (option->value && !text) {
-    if (++*at == argc) return usage("option '%s' needs a value", word, NULL);
-    text = argv[*at];
-  }
+  if (option->value && !text && ++*at < argc) text = argv[*at];
+  if (option->value && (!text || !*text)) return usage("option '%s' needs a value", word, NULL);
   take(option, text, cli, problem);
   return 0;
 }
@@ -211,8 +214,8 @@ int cli_main(int argc, char **argv) {
   if (!status && !problem.text[0]) status = command->run(&cli, &problem);
   if (problem.text[0]) {
     fprintf(stderr, "photonlab: %s\n", problem.text);
-    status = 1;
+    if (!status) status = 1;
   }
-  if (fflush(stdout) != 0) die("cannot write to standard output");
+  if (fflush(stdout) != 0 || ferror(stdout)) die("cannot write to standard output");
   return status;
 }

@@ -24,8 +24,8 @@ struct command {
   const char *name;
   const char *argument; // "SCENE", shown in the usage; "[WHAT]": may be left out; NULL: none
   const char *about;
-  const char *options;                        // names of the options it takes, separated by spaces
-  int (*run)(struct cli *, struct problem *); // the exit status; with a problem set: 1
+  const char *options; // names of those that have an effect, separated by spaces
+  int (*run)(struct cli *, struct problem *); // the exit status; 0 with a problem set counts as 1
 };
 
 // Applies the settings to a cell through the experiment's own readers.

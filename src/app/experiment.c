@@ -86,9 +86,8 @@ const struct command command_run = {"run", "EXPERIMENT",
                                     "runs an experiment file, into results/NAME or -o DIR",
                                     "output threads quiet no-skip quality seed", run};
 
-const struct command command_fit = {"fit", "DIR",
-                                    "fits rates to the results in DIR: table, fit.json, curves.csv",
-                                    "quiet threads", fit};
+const struct command command_fit = {
+    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv", "", fit};
 
 const struct command command_plot = {
-    "plot", "DIR", "draws the experiment's figure from the results in DIR", "quiet", plot};
+    "plot", "DIR", "draws the experiment's figure from the results in DIR", "", plot};

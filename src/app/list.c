@@ -106,10 +106,9 @@ static int validate(struct cli *cli, struct problem *problem) {
 const struct command command_list = {"list", "[WHAT]", "what is registered: laws, kernels, ...", "",
                                      list};
 
-const struct command command_info = {"info", "SCENE",
-                                     "what a scene holds and which features it lets us skip",
-                                     "quiet threads", info};
+const struct command command_info = {
+    "info", "SCENE", "what a scene holds and which features it lets us skip", "", info};
 
 const struct command command_validate = {
-    "validate", NULL, "checks radius laws, kernels and functions against theory's values", "quiet",
+    "validate", NULL, "checks radius laws, kernels and functions against theory's values", "",
     validate};

@@ -14,5 +14,15 @@ options=$(for command in $commands; do "$photonlab" "$command" --help; done |
 for option in $options; do
   check "the man page has the option $option" grep -qF -- "${option//-/\\-}" $page
 done
+for command in $commands; do
+  for option in --seed --threads --quiet; do
+    check "$command takes $option" grep -q -- "^ *$option " <("$photonlab" "$command" --help)
+  done
+done
+check 'a command says where an option has no effect' \
+  grep -q -- '--seed SEED *accepted, without effect here' <("$photonlab" fit --help)
+check 'list takes the options all take' "$photonlab" list laws --seed 1 --threads 2 --quiet
+check 'info takes the options all take' \
+  "$photonlab" info scenes/cornell-box.pbrt --seed name --threads 2 --quiet
 check 'there are commands and options' test -n "$commands" -a -n "$options"
 done_testing

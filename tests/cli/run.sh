@@ -130,6 +130,13 @@ refuses 'a picture in a folder that is not there, before it is rendered' 1 'x.ex
 refuses 'an unknown command' 2 "did you mean 'render'" "$photonlab" rendr
 refuses 'an unknown option' 2 "did you mean '--radius'" \
   "$photonlab" render scenes/cornell-box.pbrt --raduis 3
+refuses 'an unknown list' 2 "did you mean 'kernels'" "$photonlab" list kernel
+refuses 'an unknown option with a value' 2 "did you mean '--radius'" \
+  "$photonlab" render scenes/cornell-box.pbrt --raduis=3.141592653589
+refuses 'an empty value' 2 "'-o' needs a value" "$photonlab" run "$(experiment h)" -o ''
+refuses 'an empty value behind =' 2 'needs a value' "$photonlab" run "$(experiment h)" --output=
+refuses 'a missing value' 2 "'--seed' needs a value" "$photonlab" list --seed
+refuses 'a full standard output' 1 'standard output' bash -c '"$0" list > /dev/full' "$photonlab"
 refuses 'a missing argument' 2 SCENE "$photonlab" render
 refuses 'an option out of range' 1 'alpha' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --alpha 1.5
