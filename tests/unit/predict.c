@@ -155,6 +155,45 @@ static void test_isotropic_foot(void **state) {
   }
 }
 
+#define LAMBERTIAN POINT("\"string emission\" \"lambertian\" \"point3 to\" [0 0 0] ")
+
+// A Lambertian point light at height h: the share of its power in a disc of radius r at distance
+// rho from the foot (theory 5 ii).
+static double lambertian_share(double h, double rho, double r) {
+  double sum = rho * rho + h * h + r * r;
+  return (1 - (sum - 2 * r * r) / sqrt(sum * sum - 4 * rho * rho * r * r)) / 2;
+}
+
+static void test_lambertian(void **state) {
+  (void)state;
+  struct scene scene = light_scene(LAMBERTIAN, &arena);
+  double h = 1.3;
+  for (double rho = 0; rho < 1.6; rho += 0.37) {
+    struct profile profile = profile_at(&scene, "box", rho, 0.9);
+    double share_density = h * h / (pi * pow(h * h + rho * rho, 2));
+    for (double r = 0.2; r < 0.9; r += 0.1) {
+      double mean = lambertian_share(h, rho, r) / (pi * r * r);
+      assert_relative(profile_moment(&profile, 1, r) / profile.exact, mean / share_density, 1e-12);
+      // A box's counts are binomial: every photon inside carries the same.
+      assert_relative(profile_moment(&profile, 2, r),
+                      profile_moment(&profile, 1, r) * profile.flux / (pi * r * r), 1e-12);
+    }
+  }
+}
+
+// At the foot the bias is -r^2 / (h^2 + r^2) of the irradiance, at the ring rho = h / sqrt(2) of
+// order r^4.
+static void test_lambertian_bias(void **state) {
+  (void)state;
+  struct scene scene = light_scene(LAMBERTIAN, &arena);
+  struct profile foot = profile_at(&scene, "box", 0, 0.9);
+  for (double r = 0.01; r < 0.9; r *= 2)
+    assert_relative(profile_bias(&foot, r) / foot.exact, -r * r / (1.69 + r * r), 1e-9);
+  struct profile ring = profile_at(&scene, "box", 1.3 / sqrt(2), 0.9);
+  double wide = profile_bias(&ring, 0.08), narrow = profile_bias(&ring, 0.04);
+  assert_relative(wide / narrow, 16, 0.05); // the next term is (r / h)^2 of it
+}
+
 // ---- where there is none ----
 
 static void test_refusals(void **state) {
@@ -234,6 +273,9 @@ int main(void) {
        test_variance_of_quadratic_beam, 0, 0, 0},
       {"the box on a Gaussian beam's axis has its closed form", test_gaussian_beam, 0, 0, 0},
       {"the box at an isotropic light's foot has its closed form", test_isotropic_foot, 0, 0, 0},
+      {"the box under a Lambertian light has its closed form, anywhere", test_lambertian, 0, 0, 0},
+      {"under a Lambertian light the bias is r^2 at the foot and r^4 at the ring",
+       test_lambertian_bias, 0, 0, 0},
       {"there is no closed form across an edge, with two lights, footprints or direct sampling",
        test_refusals, 0, 0, 0},
       {"a wall takes the closed form away, a patch in the plane does not", test_other_surfaces, 0,
