@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-const char *const verdict_names[] = {"agree", "disagree", "not-detected", "not-resolvable"};
+const char *const verdict_names[N_VERDICTS] = {"agree", "disagree", "not-detected",
+                                               "not-resolvable"};
 
 static const double family_wise_level = 0.01;
 
@@ -38,7 +39,7 @@ static bool missed(const struct fit_row *row) {
 // Any disagreement decides; otherwise the run agrees if any row does and none is missed. Rows that
 // cannot tell do not spoil those that can.
 static enum verdict run_verdict(const struct fit *fit) {
-  int count[4] = {0};
+  int count[N_VERDICTS] = {0};
   bool any_missed = false;
   for (int r = 0; r < fit->n_rows; r++) {
     count[fit->row[r].verdict]++;
@@ -50,6 +51,11 @@ static enum verdict run_verdict(const struct fit *fit) {
   return count[VERDICT_NOT_DETECTED] ? VERDICT_NOT_DETECTED : VERDICT_NOT_RESOLVABLE;
 }
 
+// A rate is only stated where a verdict stands on it.
+static void withdraw_rate(struct fit_row *row) {
+  row->rate = row->rate_se = row->rate_lo = row->rate_hi = NAN;
+}
+
 static void judge(struct fit *fit) {
   int n_tests = 0;
   for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests;
@@ -59,6 +65,8 @@ static void judge(struct fit *fit) {
     struct fit_row *row = &fit->row[r];
     for (int t = 0; t < row->n_tests; t++) row->test[t].rejects = row->test[t].p < fit->test_level;
     row->verdict = row_verdict(row);
+    if (row->verdict == VERDICT_NOT_DETECTED || row->verdict == VERDICT_NOT_RESOLVABLE)
+      withdraw_rate(row);
   }
   fit->verdict = run_verdict(fit);
 }
@@ -146,6 +154,19 @@ static const struct family *shared_family(struct shared *shared, const struct ce
   return &known->family;
 }
 
+static bool check_finite(const struct results *results, const struct series *series,
+                         struct problem *problem) {
+  for (uint64_t j = 0; j < series->n_iterations; j++) {
+    struct moments m = series->iteration[j];
+    if (isfinite(m.mean) && isfinite(m.m2) && isfinite(m.m4)) continue;
+    const struct probe *probe = &results->probe[series->cell][series->probe];
+    return problem_set(problem, "%s/log.csv: cell %d, probe %d,%d, iteration %llu is not finite",
+                       results->directory, series->cell, probe->x, probe->y,
+                       (unsigned long long)j + 1);
+  }
+  return true;
+}
+
 bool fit_results(const struct results *results, struct arena *arena, struct fit *fit,
                  struct problem *problem) {
   struct shared shared = {0};
@@ -153,6 +174,7 @@ bool fit_results(const struct results *results, struct arena *arena, struct fit 
   for (int s = 0; s < results->n_series; s++) {
     const struct series *series = &results->series[s];
     const struct cell *cell = &results->experiment.cell[series->cell];
+    if (!check_finite(results, series, problem)) return false;
     const struct scene *scene = shared_scene(&shared, results, cell, arena, problem);
     if (!scene) return false;
     const struct family *family = shared_family(&shared, cell, series->n_iterations, arena);

@@ -15,20 +15,22 @@ enum verdict {
   VERDICT_DISAGREE,       // a test rejects theory at the level of the run
   VERDICT_NOT_DETECTED,   // bias: nothing found; upper_bound says how much there may be
   VERDICT_NOT_RESOLVABLE, // too little is known of the rate to judge it
+  N_VERDICTS
 };
-extern const char *const verdict_names[];
+extern const char *const verdict_names[N_VERDICTS];
 
 struct fit_test {
-  const char *name; // "rate", "coefficient", "independence", "lack-of-fit", "zero-bias"
+  const char *name; // "rate", "coefficient", "independence", "lack-of-fit", "zero-bias", "silence"
   double statistic, p;
   bool rejects;
 };
 enum { FIT_TESTS = 4 };
 
-// Numbers that are not known are NAN. Variance: rate a of Var(average of N) ~ N^-a, coefficient A
-// [radiance^2], the variance of the first iteration without its part that stays constant. Bias:
-// |bias of iteration i| ~ i^-rate, coefficient b_1 [radiance], the bias of the first iteration
-// (without a closed form: the part of it that is proportional to r^2).
+// Numbers that are not known are NAN, and so is a rate that no verdict stands on. Variance: rate a
+// of Var(average of N) ~ N^-a, coefficient A [radiance^2], the variance of the first iteration
+// without its part that stays constant. Bias: |bias of iteration i| ~ i^-rate, coefficient b_1
+// [radiance], the bias of the first iteration (without a closed form: the part of it that is
+// proportional to r^2).
 struct fit_row {
   const struct cell *cell;
   const struct probe *probe;
@@ -37,11 +39,12 @@ struct fit_row {
   uint64_t first; // iteration fitted; the discs of earlier ones touch edges or other surfaces
   double rate_theory, rate, rate_se, rate_lo, rate_hi; // 95 % interval
   double coefficient_theory, coefficient, coefficient_se;
-  double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, |b_1| + 1.96 SE
+  double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, 95 %
   struct fit_test test[FIT_TESTS];
   int n_tests;
   bool resolved, detected;
   enum verdict verdict;
+  const char *why; // there is no fit; or NULL
 };
 
 // The measured curve of the average beside the predicted one.
@@ -65,7 +68,7 @@ struct fit {
 };
 
 // Reads the scenes of the experiment for their closed forms; one that was changed since the run is
-// a problem.
+// a problem, and so is a value that is not finite.
 bool fit_results(const struct results *, struct arena *, struct fit *, struct problem *);
 
 // The same with predictions in hand, one per series (in results' order).

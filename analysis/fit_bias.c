@@ -3,6 +3,8 @@
 // linear; the rate is profiled.
 #include "analysis/fit_bias.h"
 
+#include "analysis/special.h"
+
 #include <math.h>
 
 // Columns of the linear part: bias t^(2/d), bias2, and 1 if the reference is uncertain. The second
@@ -73,7 +75,6 @@ static bool solve_linear(struct model *model, double rate, struct solution *solu
 // ---- the profile over the rate ----
 // In the variance's rate a; the bias's is (2/d)(1 - a), searched in [-1, 2].
 
-static const double chi2_95 = 3.841458820694124;
 enum { SCAN = 24 };
 
 static double profile(struct model *model, double rate) {
@@ -159,13 +160,15 @@ static double curvature_se(struct model *model, const struct solution *best) {
 
 // Leaves the model at the best rate, or at theory's where none is found.
 static bool find_rate(struct model *model, const struct solution *theory, struct solution *best,
-                      struct bias_fit *fit) {
+                      double variance_dof, struct bias_fit *fit) {
+  double two_sided_95 = special_t_quantile(0.025, variance_dof);
   struct scan scan = scan_rates(model);
   if (scan.lowest == 0 || scan.lowest == SCAN) return false;
   double rate = lowest_between(model, scan.rate[scan.lowest - 1], scan.rate[scan.lowest + 1]), lo,
          hi;
   if (!solve_linear(model, rate, best)) return false;
-  if (!interval(model, &scan, rate, best->chi2 + chi2_95, &lo, &hi)) return false;
+  if (!interval(model, &scan, rate, best->chi2 + two_sided_95 * two_sided_95, &lo, &hi))
+    return false;
   if (!solve_linear(model, rate, best)) return false;
   double per_rate = 2.0 / model->theory->d;
   fit->rate = per_rate * (1 - rate);
@@ -180,10 +183,10 @@ static bool find_rate(struct model *model, const struct solution *theory, struct
 // ---- lack of fit ----
 
 static struct chi2 lack_of_fit(const struct model *model, const struct solution *at, bool free_rate,
-                               struct arena scratch) {
+                               const double *worth, struct arena scratch) {
   uint64_t n = model->theory->n, j = model->theory->first;
   int parameters = model->n_columns + free_rate;
-  struct bins bins = bins_new(model->weight, model->theory->first, n, 0, &scratch);
+  struct bins bins = bins_new(worth, model->theory->first, n, 1, &scratch);
   double *deviate = arena_new(&scratch, double, bins.n);
   double(*direction)[SOLVE_MAX] = arena_alloc(&scratch, bins.n, sizeof *direction, alignof(double));
   for (int b = 0; b < bins.n; b++) {
@@ -220,7 +223,8 @@ static void fill_expected(const struct model *model, const struct solution *at, 
 }
 
 struct bias_fit fit_bias(const struct prediction *theory, const struct moments *iteration,
-                         const double *variance, struct arena *arena) {
+                         const struct variance_fit *v, const double *variance,
+                         struct arena *arena) {
   struct bias_fit fit = {0};
   ptrdiff_t n = (ptrdiff_t)theory->n;
   if (!isfinite(theory->truth) || !isfinite(theory->truth_se)) return fit;
@@ -249,10 +253,10 @@ struct bias_fit fit_bias(const struct prediction *theory, const struct moments *
   fit.snr = fabs(fit.coefficient) / fit.coefficient_se;
   fit.expected = arena_new(arena, double, n);
   fill_expected(&model, &held, fit.expected);
-  fit.lack_of_fit = lack_of_fit(&model, &held, false, *arena);
+  fit.lack_of_fit = lack_of_fit(&model, &held, false, v->worth, *arena);
   if (theory->unbiased) return fit;
   fit.rate_se_theory = 2.0 / theory->d * curvature_se(&model, &held);
-  fit.rate_found = find_rate(&model, &held, &best, &fit);
-  if (fit.rate_found) fit.lack_of_fit = lack_of_fit(&model, &best, true, *arena);
+  fit.rate_found = find_rate(&model, &held, &best, v->dof, &fit);
+  if (fit.rate_found) fit.lack_of_fit = lack_of_fit(&model, &best, true, v->worth, *arena);
   return fit;
 }

@@ -5,6 +5,7 @@
 #define ANALYSIS_FIT_BIAS_H
 
 #include "analysis/bins.h"
+#include "analysis/fit_variance.h"
 #include "analysis/prediction.h"
 
 struct bias_fit {
@@ -21,8 +22,8 @@ struct bias_fit {
 
 double bias_theory_rate(const struct prediction *);
 
-// variance: [n] of one iteration, from the variance's fit.
+// With the variance's fit, and [n] its variances of one iteration that weigh the means.
 struct bias_fit fit_bias(const struct prediction *, const struct moments *iteration,
-                         const double *variance, struct arena *);
+                         const struct variance_fit *, const double *variance, struct arena *);
 
 #endif

@@ -34,7 +34,7 @@ void fit_variance_points(const struct series *series, const struct variance_fit 
                          const struct fit_row *row, struct fit *fit) {
   struct sums sums = {0};
   double unit = isfinite(row->coefficient_theory) ? v->coefficient : 1;
-  for (int c = 0; v->converged && c < series->n_checkpoints; c++) {
+  for (int c = 0; !v->why && c < series->n_checkpoints; c++) {
     double n = (double)series->checkpoint[c], runs = series->average[c].n;
     advance_variance(&sums, series->checkpoint[c], series, v);
     struct fit_point *point = new_point(fit, row, series->checkpoint[c]);

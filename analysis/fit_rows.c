@@ -2,6 +2,7 @@
 
 #include "analysis/special.h"
 
+#include <float.h>
 #include <math.h>
 
 static const double largest_rate_se = 0.1, widest_interval = 0.3;
@@ -15,9 +16,14 @@ static void add_deviate(struct fit_row *row, const char *name, double z) {
   add_test(row, name, z, special_two_sided(z));
 }
 
-static void add_chi2(struct fit_row *row, struct chi2 chi2) {
-  if (chi2.dof >= 1)
-    add_test(row, "lack-of-fit", chi2.value, special_chi2_upper(chi2.value, chi2.dof));
+// A bias's standard error rests on a measured variance.
+static void add_t(struct fit_row *row, const char *name, double t, double variance_dof) {
+  add_test(row, name, t, special_t_two_sided(t, variance_dof));
+}
+
+// Root of a likelihood ratio.
+static void add_silence(struct fit_row *row, double p) {
+  if (isfinite(p)) add_test(row, "silence", sqrt(-2 * log(fmax(p, DBL_MIN))), p);
 }
 
 static struct fit_row *new_row(const struct results *results, const struct series *series,
@@ -66,7 +72,8 @@ static void variance_row(const struct variance_fit *v, const struct prediction *
                          struct fit_row *row) {
   row->rate_theory = theory->family.theory;
   if (has_constants(theory)) row->coefficient_theory = theory->variance_coefficient;
-  if (!v->converged) return;
+  add_silence(row, v->silence);
+  if (v->why) return;
   double half = 1.959963984540054 * v->rate_se;
   set_rate(row, v->rate, v->rate_se, v->rate - half, v->rate + half);
   set_coefficient(row, theory->variance_coefficient, v->coefficient, v->coefficient_se);
@@ -77,26 +84,28 @@ static void variance_row(const struct variance_fit *v, const struct prediction *
   }
 }
 
-static void bias_row(const struct bias_fit *b, const struct prediction *theory,
-                     struct fit_row *row) {
+static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
+                     const struct prediction *theory, struct fit_row *row) {
   if (!theory->unbiased) row->rate_theory = bias_theory_rate(theory);
   double known = theory->unbiased ? 0 : theory->bias_coefficient;
   if (theory->unbiased || has_constants(theory)) row->coefficient_theory = known;
+  add_silence(row, v->silence);
   if (!b->measured) return;
   set_coefficient(row, theory->unbiased ? 1 : known, b->coefficient, b->coefficient_se);
   row->snr = b->snr;
-  row->upper_bound = fabs(row->coefficient) + 1.959963984540054 * row->coefficient_se;
+  row->upper_bound =
+      fabs(row->coefficient) + special_t_quantile(0.025, v->dof) * row->coefficient_se;
   row->expected_snr = fabs(row->coefficient_theory) / row->coefficient_se;
   row->detected = b->snr >= fit_detection_snr && !theory->unbiased;
   // A rate that theory says cannot be known is not known because chance put the best fit where the
   // profile is narrow.
   if (row->detected && b->rate_found && b->rate_se_theory <= largest_rate_se)
     set_rate(row, b->rate, b->rate_se, b->rate_lo, b->rate_hi);
-  if (row->resolved) add_deviate(row, "rate", b->rate_deviate);
+  if (row->resolved) add_t(row, "rate", b->rate_deviate, v->dof);
   if (theory->unbiased)
-    add_deviate(row, "zero-bias", b->coefficient / b->coefficient_se);
+    add_t(row, "zero-bias", b->coefficient / b->coefficient_se, v->dof);
   else if (has_constants(theory))
-    add_deviate(row, "coefficient", (b->coefficient - 1) / b->coefficient_se);
+    add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, v->dof);
 }
 
 void fit_series(const struct results *results, const struct series *series,
@@ -106,20 +115,26 @@ void fit_series(const struct results *results, const struct series *series,
   double ratio, dependence = fit_independence(&v, series, &ratio);
   if (cell->quantities & QUANTITY_VARIANCE) {
     struct fit_row *row = new_row(results, series, theory, QUANTITY_VARIANCE, fit);
+    row->why = v.why;
     variance_row(&v, theory, row);
     if (theory->independent) add_deviate(row, "independence", dependence);
-    if (theory->independent && v.converged) add_chi2(row, v.lack_of_fit);
+    if (theory->independent && !v.why && v.lack_of_fit.dof >= 1)
+      add_test(row, "lack-of-fit", v.lack_of_fit.value,
+               special_chi2_upper(v.lack_of_fit.value, v.lack_of_fit.dof));
     fit_variance_points(series, &v, row, fit);
   }
   if (cell->quantities & QUANTITY_BIAS) {
     struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
     struct bias_fit b = {0};
     const double *weights = v.rate_se <= largest_rate_se ? v.variance : v.expected;
-    if (v.converged) b = fit_bias(theory, series->iteration, weights, &scratch);
-    bias_row(&b, theory, row);
+    if (!v.why) b = fit_bias(theory, series->iteration, &v, weights, &scratch);
+    row->why = v.why || isfinite(theory->truth) ? v.why : "no reference";
+    bias_row(&b, &v, theory, row);
     if (theory->independent && b.measured) {
       add_deviate(row, "independence", dependence); // its standard errors rest on it
-      add_chi2(row, b.lack_of_fit);
+      if (b.lack_of_fit.dof >= 1)
+        add_test(row, "lack-of-fit", b.lack_of_fit.value,
+                 special_f_upper(b.lack_of_fit.value, b.lack_of_fit.dof, v.dof));
     }
     fit_bias_points(series, theory, &v, &b, row, fit);
   }

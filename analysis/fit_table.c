@@ -43,6 +43,9 @@ static void print_alpha(const struct fit_row *row, char *text) {
 static void print_quantity(const struct fit_row *row, char *text) {
   copy(text, row->quantity == QUANTITY_VARIANCE ? "variance" : "bias");
 }
+static void print_first(const struct fit_row *row, char *text) {
+  snprintf(text, CELL_SIZE, "%llu", (unsigned long long)row->first);
+}
 static void print_theory(const struct fit_row *row, char *text) {
   print_number(text, "%.4f", row->rate_theory);
 }
@@ -64,6 +67,8 @@ static void print_ratio(const struct fit_row *row, char *text) {
 static void print_verdict(const struct fit_row *row, char *text) {
   copy(text, verdict_names[row->verdict]);
   const char *separator = ":";
+  if (row->why && row->verdict == VERDICT_NOT_RESOLVABLE)
+    snprintf(text, CELL_SIZE, "%s: %s", verdict_names[row->verdict], row->why);
   for (int t = 0; t < row->n_tests; t++) {
     size_t length = strlen(text);
     if (!row->test[t].rejects) continue;
@@ -73,12 +78,13 @@ static void print_verdict(const struct fit_row *row, char *text) {
 }
 
 static const struct column columns[] = {
-    {"scene", true, false, print_scene},         {"integrator", true, true, print_integrator},
-    {"kernel", true, true, print_kernel},        {"law", true, true, print_law},
-    {"probe", false, true, print_probe},         {"alpha", false, false, print_alpha},
-    {"quantity", true, false, print_quantity},   {"theory", false, false, print_theory},
-    {"rate", false, false, print_rate},          {"95 %", false, false, print_interval},
-    {"coeff/theory", false, false, print_ratio}, {"verdict", true, false, print_verdict},
+    {"scene", true, false, print_scene},       {"integrator", true, true, print_integrator},
+    {"kernel", true, true, print_kernel},      {"law", true, true, print_law},
+    {"probe", false, true, print_probe},       {"alpha", false, false, print_alpha},
+    {"quantity", true, false, print_quantity}, {"from", false, true, print_first},
+    {"theory", false, false, print_theory},    {"rate", false, false, print_rate},
+    {"95 %", false, false, print_interval},    {"coeff/theory", false, false, print_ratio},
+    {"verdict", true, false, print_verdict},
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns };
 
@@ -126,6 +132,17 @@ static void print_row(const struct fit_row *row, const int *width, bool colour, 
   fputc('\n', stream);
 }
 
+// How many rows say what, since rows that cannot tell do not decide the run's verdict.
+static void print_counts(const struct fit *fit, FILE *stream) {
+  const char *separator = "";
+  for (int v = 0; v < N_VERDICTS; v++) {
+    int count = 0;
+    for (int r = 0; r < fit->n_rows; r++) count += fit->row[r].verdict == (enum verdict)v;
+    if (count) fprintf(stream, "%s%d %s", separator, count, verdict_names[v]);
+    if (count) separator = ", ";
+  }
+}
+
 void fit_print_table(const struct fit *fit, FILE *stream) {
   bool colour = in_colour(stream);
   int width[N_COLUMNS];
@@ -134,7 +151,9 @@ void fit_print_table(const struct fit *fit, FILE *stream) {
     if (width[c]) print_cell(stream, c, width[c], columns[c].head);
   fputc('\n', stream);
   for (int r = 0; r < fit->n_rows; r++) print_row(&fit->row[r], width, colour, stream);
-  fprintf(stream, "%s: %s%s%s (family-wise level %g, each test at %.2g)\n", fit->experiment->name,
-          colour ? colour_of(fit->verdict) : "", verdict_names[fit->verdict],
-          colour ? "\033[0m" : "", fit->level, fit->test_level);
+  fprintf(stream, "%s: %s%s%s (", fit->experiment->name, colour ? colour_of(fit->verdict) : "",
+          verdict_names[fit->verdict], colour ? "\033[0m" : "");
+  print_counts(fit, stream);
+  fprintf(stream, "%sfamily-wise level %g, each test at %.2g)\n", fit->n_rows ? "; " : "",
+          fit->level, fit->test_level);
 }

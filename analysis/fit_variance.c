@@ -145,16 +145,24 @@ static void fill_dispersion(const struct prediction *theory, double runs, double
 
 // ---- lack of fit ----
 
-// A bin needs this many over its relative variance to be taken as gamma distributed.
-static const double enough_information = 5;
+// A bin needs so many over its relative variance to move in proportion to the parameters, and so
+// many photons, one over the excess kurtosis, to be taken as gamma distributed: without any, which
+// a gamma never is, it is then once in e^20.
+static const double enough_information = 5, enough_photons = 20;
 
-static struct chi2 lack_of_fit(const struct model *model, const struct point *at,
-                               struct arena scratch) {
+static void fill_worth(double runs, const double *dispersion, uint64_t n, double *worth) {
+  for (uint64_t j = 0; j < n; j++) {
+    double excess = dispersion[j] - 2 / (runs - 1);
+    worth[j] = fmin(1 / dispersion[j] / enough_information,
+                    excess > 0 ? 1 / excess / enough_photons : INFINITY);
+  }
+}
+
+static struct chi2 lack_of_fit(const struct model *model, const struct point *at, bool free_rate,
+                               const double *worth, struct arena scratch) {
   uint64_t n = model->theory->n;
-  int parameters = model->n_coefficients + 1;
-  double *information = arena_new(&scratch, double, (ptrdiff_t)n);
-  for (uint64_t j = 0; j < n; j++) information[j] = 1 / model->dispersion[j];
-  struct bins bins = bins_new(information, model->theory->first, n, enough_information, &scratch);
+  int parameters = model->n_coefficients + free_rate;
+  struct bins bins = bins_new(worth, model->theory->first, n, 1, &scratch);
   double *deviate = arena_new(&scratch, double, bins.n);
   double(*direction)[SOLVE_MAX] = arena_alloc(&scratch, bins.n, sizeof *direction, alignof(double));
   family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
@@ -163,10 +171,11 @@ static struct chi2 lack_of_fit(const struct model *model, const struct point *at
     double held = 0, ratio = 0;
     for (; j < bins.end[b]; j++) {
       struct row row = model_row(model, at, j);
-      held += information[j];
-      ratio += information[j] * model->measured[j] / row.variance;
+      double information = 1 / model->dispersion[j];
+      held += information;
+      ratio += information * model->measured[j] / row.variance;
       for (int a = 0; a < parameters; a++)
-        direction[b][a] += information[j] * row.by[a] / row.variance;
+        direction[b][a] += information * row.by[a] / row.variance;
     }
     for (int a = 0; a < parameters; a++) direction[b][a] /= sqrt(held);
     deviate[b] = special_gamma_deviate(ratio / held, 1 / held);
@@ -197,22 +206,67 @@ static bool fit_coefficient(const struct model *model, struct variance_fit *fit,
   return true;
 }
 
-static bool all_measured(const struct moments *iteration, uint64_t first, uint64_t n) {
+static bool all_the_same(const struct moments *iteration, uint64_t first, uint64_t n) {
+  for (uint64_t j = first; j < n; j++)
+    if (iteration[j].m2 != 0) return false;
+  return true;
+}
+
+static bool all_exact(const struct prediction *theory, const struct moments *iteration) {
+  for (uint64_t j = theory->first; j < theory->n; j++)
+    if (iteration[j].m2 != 0 || iteration[j].mean != theory->truth) return false;
+  return true;
+}
+
+static bool is_dark(const struct prediction *theory) {
+  for (uint64_t j = theory->first; j < theory->n; j++)
+    if (theory->divergent[j] != 0) return false;
+  return true;
+}
+
+static double information_of(const struct prediction *theory, const double *dispersion) {
   double sum = 0;
-  for (uint64_t j = first; j < n; j++) sum += iteration[j].m2;
-  return n > first && iteration[0].n >= 2 && sum > 0 && isfinite(sum);
+  for (uint64_t j = theory->first; j < theory->n; j++) sum += 1 / dispersion[j];
+  return sum;
+}
+
+// Bounded by e^-(photons expected) where they are rare (a kurtosis is one over their number) and by
+// e^-(K - 1)/2 an iteration where they are not.
+static double silence(const struct prediction *theory, double runs) {
+  if (!theory->closed_form || !theory->independent) return NAN;
+  double information = 0;
+  for (uint64_t j = theory->first; j < theory->n; j++)
+    information += 1 / (2 / (runs - 1) + fmax(theory->kurtosis[j], 0) / runs);
+  return exp(-information);
+}
+
+static const char *why_not(const struct prediction *theory, const struct moments *iteration,
+                           double *improbable) {
+  double runs = iteration[0].n;
+  if (theory->first == theory->n) return "no disc is clear of edges";
+  if (runs < 2) return "one run";
+  if (is_dark(theory)) {
+    if (!all_exact(theory, iteration)) *improbable = 0;
+    return "no light";
+  }
+  if (!all_the_same(iteration, theory->first, theory->n)) return NULL;
+  *improbable = silence(theory, runs);
+  return "all runs the same";
 }
 
 struct variance_fit fit_variance(const struct prediction *theory, const struct moments *iteration,
                                  struct arena *arena) {
-  struct variance_fit fit = {0};
+  struct variance_fit fit = {.silence = NAN, .rate = NAN, .rate_se = INFINITY};
   ptrdiff_t n = (ptrdiff_t)theory->n;
-  if (!all_measured(iteration, theory->first, theory->n)) return fit;
-  double runs = iteration[0].n, *measured = arena_new(arena, double, n);
+  double runs = iteration[0].n;
+  if ((fit.why = why_not(theory, iteration, &fit.silence))) return fit;
+  fit.why = "the fit does not converge";
+  double *measured = arena_new(arena, double, n);
   for (ptrdiff_t j = 0; j < n; j++) measured[j] = moments_variance(iteration[j]);
   fit.variance = arena_new(arena, double, n);
   fit.expected = arena_new(arena, double, n);
   fit.dispersion = arena_new(arena, double, n);
+  fit.worth = arena_new(arena, double, n);
   struct model model = {
       .theory = theory,
       .measured = measured,
@@ -229,31 +283,31 @@ struct variance_fit fit_variance(const struct prediction *theory, const struct m
     if (!fit_coefficient(&model, &fit, &held)) return fit;
   }
   struct point best = held;
-  if (!fit_rate(&model, &fit, &best)) return fit;
-  fit.lack_of_fit = lack_of_fit(&model, &best, *arena);
-  double information = 0;
-  for (ptrdiff_t j = (ptrdiff_t)theory->first; j < n; j++) information += 1 / fit.dispersion[j];
-  fit.null_se = 1 / sqrt(information);
-  fit.converged = true;
+  bool rate_found = fit_rate(&model, &fit, &best);
+  if (!rate_found) {
+    best = held;
+    fill_variance(&model, &best, fit.variance);
+  }
+  fill_worth(runs, fit.dispersion, theory->n, fit.worth);
+  fit.lack_of_fit = lack_of_fit(&model, &best, rate_found, fit.worth, *arena);
+  fit.null_se = 1 / sqrt(information_of(theory, fit.dispersion));
+  fit.dof = 2 / (fit.null_se * fit.null_se);
+  fit.why = NULL;
   return fit;
 }
 
 // Both are sums of the same squares; the first has their products between iterations besides, each
-// of variance V_i V_j / (K - 1). So the ratio's variance needs no kurtosis.
+// of variance V_i V_j / (K - 1). So the ratio's variance needs no kurtosis: it is chi-squared with
+// K - 1 degrees of freedom over their number, and with few iterations less spread than that.
 double fit_independence(const struct variance_fit *fit, const struct series *series,
                         double *ratio) {
   *ratio = NAN;
-  if (!fit->converged || series->n_checkpoints < 1) return NAN;
+  if (fit->why || series->n_checkpoints < 1) return NAN;
   uint64_t n = series->checkpoint[series->n_checkpoints - 1];
   struct moments average = series->average[series->n_checkpoints - 1];
-  double pooled = 0, sum = 0, squares = 0;
-  for (uint64_t j = 0; j < n; j++) {
-    pooled += moments_variance(series->iteration[j]);
-    sum += fit->variance[j];
-    squares += fit->variance[j] * fit->variance[j];
-  }
+  double pooled = 0;
+  for (uint64_t j = 0; j < n; j++) pooled += moments_variance(series->iteration[j]);
   if (n < 2 || !(average.n >= 2) || !(pooled > 0)) return NAN;
   *ratio = moments_variance(average) * (double)n * (double)n / pooled;
-  double between = 1 - squares / (sum * sum);
-  return special_gamma_deviate(*ratio, 2 / (average.n - 1) * between);
+  return special_gamma_deviate(*ratio, 2 / (average.n - 1));
 }

@@ -7,14 +7,19 @@
 #include "analysis/prediction.h"
 
 struct variance_fit {
-  bool converged; // else nothing below is meant
-  double rate, rate_se;
+  const char *why; // there is no fit; NULL: there is, else nothing below `silence` is meant
+  // Where a closed form says that values vary and they do not, or that there is no light and some
+  // is found: how probable that is. Else NAN.
+  double silence;
+  double rate, rate_se;               // where none is found, as from one iteration: NAN, infinite
   double coefficient, coefficient_se; // of prediction.divergent, with the rate held at theory
   double null_se; // relative standard error of the coefficient if theory is right
+  double dof;     // of a chi-squared with this relative variance
   struct chi2 lack_of_fit;
-  double *variance;   // [n] fitted, rate free
+  double *variance;   // [n] fitted, rate free where it was found
   double *expected;   // [n] fitted, rate at theory; theory itself in closed form
   double *dispersion; // [n] relative variance of the measured variance of one iteration
+  double *worth;      // [n] of one iteration in a bin; a bin needs 1
 };
 
 struct variance_fit fit_variance(const struct prediction *, const struct moments *iteration,

@@ -7,6 +7,12 @@ double special_normal_quantile(double upper); // z with P(Z > z) = upper
 double special_two_sided(double z);           // P(|Z| > |z|)
 double special_chi2_upper(double x, double dof);
 
+// The same where the variance behind z or chi-squared was itself estimated with so many degrees of
+// freedom: Student's t, and chi-squared / dof as F.
+double special_t_two_sided(double t, double variance_dof);
+double special_t_quantile(double upper, double variance_dof);
+double special_f_upper(double chi2, double dof, double variance_dof);
+
 // A positive estimate of 1 with this relative variance, taken as gamma distributed (exact for
 // variances of normal data): the normal deviate with the same tail, and the quantile.
 double special_gamma_deviate(double ratio, double relative_variance);

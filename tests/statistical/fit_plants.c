@@ -136,6 +136,72 @@ static void test_nothing_to_see(void **state) {
   assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
 }
 
+// One iteration has no rate, but its coefficients are tested all the same.
+static void test_one_iteration(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: one iteration", s.iterations = 1, s.runs = 1000;
+  struct fit fit = fit_of(&s);
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
+  s.factor = 0.5312;
+  fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "coefficient");
+  assert_rejects(&fit.row[1], "coefficient");
+}
+
+// Nothing arrives where theory expects 1600 photons in the first iterations alone.
+static void test_black(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.black = true;
+  struct fit fit = fit_of(&s);
+  assert_rejects(&fit.row[0], "silence");
+  assert_rejects(&fit.row[1], "silence");
+  s.photons_1 = 1e-6; // now it is no wonder
+  fit = fit_of(&s);
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
+  assert_true(synthetic_test(&fit.row[0], "silence")->p > 0.9);
+  s.closed_form = false; // and here nothing is expected
+  fit = fit_of(&s);
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
+  assert_null(synthetic_test(&fit.row[0], "silence"));
+}
+
+// Where theory says that no light falls, some does.
+static void test_light_in_the_dark(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  struct prediction dark = synthetic_prediction(&s, &arena);
+  const double *zero = arena_new(&arena, double, (ptrdiff_t)s.iterations);
+  dark.truth = 0, dark.unbiased = true, dark.divergent = dark.rest = zero;
+  struct fit fit = synthetic_fit_with(&s, &dark, 1, &arena);
+  assert_rejects(&fit.row[0], "silence");
+  assert_rejects(&fit.row[1], "silence");
+  s.black = true;
+  fit = synthetic_fit_with(&s, &dark, 1, &arena);
+  assert_int_equal(fit.row[0].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_int_equal(fit.row[0].n_tests, 0);
+}
+
+// The radius is halved for a while in the middle, where it turns no slope: no contradiction to a
+// rate that holds in the limit, but then none is to be had from this.
+static double dented(double alpha, double rho, uint64_t i) {
+  (void)alpha;
+  return i >= 330 && i < 410 ? rho / 1.3 : rho;
+}
+
+static void test_no_rate_without_fit(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.closed_form = false, s.runs = 200, s.r2 = dented;
+  struct fit fit = fit_of(&s);
+  assert_true(synthetic_test(&fit.row[0], "lack-of-fit")->rejects);
+  assert_false(synthetic_test(&fit.row[0], "rate")->rejects);
+  assert_int_equal(fit.row[0].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_false(isfinite(fit.row[0].rate) || isfinite(fit.row[0].rate_se));
+  assert_false(isfinite(fit.row[0].rate_lo) || isfinite(fit.row[0].rate_hi));
+}
+
 int main(void) {
   arena = arena_reserve();
   const struct CMUnitTest tests[] = {
@@ -147,6 +213,10 @@ int main(void) {
       {"iterations with the same photons are not independent", test_reused_seed, 0, 0, 0},
       {"where there is no bias none is detected", test_zero_bias, 0, 0, 0},
       {"too few runs say so", test_nothing_to_see, 0, 0, 0},
+      {"one iteration has no rate but is tested", test_one_iteration, 0, 0, 0},
+      {"black where there is light disagrees, unless none was to be expected", test_black, 0, 0, 0},
+      {"light where there is none disagrees", test_light_in_the_dark, 0, 0, 0},
+      {"where the model does not fit no rate is stated", test_no_rate_without_fit, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit_plants", tests, NULL, NULL);
 }

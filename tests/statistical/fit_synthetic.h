@@ -21,6 +21,7 @@ struct synthetic {
   double (*r2)(double alpha, double rho, uint64_t i);
   double factor;
   bool reuse;
+  bool black;          // every value is 0
   double reference_se; // without closed form: the reference is off by a draw of this
   bool closed_form;
 };
@@ -62,6 +63,7 @@ static inline double poisson(double mean, double u) {
 // unit of area.
 static inline double synthetic_value(const struct synthetic *s, double rho, uint64_t i,
                                      struct stream *stream) {
+  if (s->black) return 0;
   double r2 = s->r2 ? s->r2(s->alpha, rho, i) : rho, mean = 1 - s->curvature * r2 / 2;
   double photons = s->photons_1 * r2 * mean, value;
   if (s->gaussian)
@@ -96,11 +98,11 @@ static inline struct prediction synthetic_prediction(const struct synthetic *s,
 static inline struct series synthetic_series(const struct synthetic *s, const double *rho,
                                              uint64_t experiment, struct arena *arena) {
   uint64_t n = s->iterations;
-  struct series series = {.n_iterations = n, .n_checkpoints = 2};
+  struct series series = {.n_iterations = n, .n_checkpoints = n > 1 ? 2 : 1};
   series.iteration = arena_new(arena, struct moments, (ptrdiff_t)n);
   series.average = arena_new(arena, struct moments, 2);
   series.checkpoint = arena_new(arena, uint64_t, 2);
-  series.checkpoint[0] = n / 2, series.checkpoint[1] = n;
+  series.checkpoint[0] = (n + 1) / 2, series.checkpoint[1] = n;
   for (uint64_t run = 1; run <= s->runs; run++) {
     struct stream stream = {rng_key(rng_hash_name(s->name) + experiment, run, RNG_TEST), 0};
     double sum = 0;

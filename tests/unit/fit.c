@@ -68,6 +68,146 @@ static void test_json(void **state) {
   json_decref(root);
 }
 
+enum kind { STRING, NUMBER, PAIR, COUNT, TRUTH, LIST };
+struct key {
+  const char *name;
+  enum kind kind;
+};
+#define END                                                                                        \
+  { NULL, STRING }
+
+static const struct key top_keys[] = {{"experiment", STRING},
+                                      {"quality", STRING},
+                                      {"level", NUMBER},
+                                      {"test_level", NUMBER},
+                                      {"verdict", STRING},
+                                      {"cells", LIST},
+                                      END};
+static const struct key cell_keys[] = {{"scene", STRING},
+                                       {"probe", PAIR},
+                                       {"integrator", STRING},
+                                       {"kernel", STRING},
+                                       {"law", STRING},
+                                       {"alpha", NUMBER},
+                                       {"quantity", STRING},
+                                       {"rate_theory", NUMBER},
+                                       {"rate", NUMBER},
+                                       {"rate_se", NUMBER},
+                                       {"rate_ci95", PAIR},
+                                       {"coefficient_theory", NUMBER},
+                                       {"coefficient", NUMBER},
+                                       {"coefficient_se", NUMBER},
+                                       {"tests", LIST},
+                                       {"verdict", STRING},
+                                       END};
+// What the fit adds of its own.
+static const struct key added_keys[] = {{"closed_form", TRUTH}, {"first_iteration", COUNT}, END};
+static const struct key bias_keys[] = {
+    {"snr", NUMBER}, {"expected_snr", NUMBER}, {"upper_bound", NUMBER}, END};
+static const struct key test_keys[] = {
+    {"name", STRING}, {"statistic", NUMBER}, {"p", NUMBER}, {"verdict", STRING}, END};
+
+static bool is_number(json_t *value) { return json_is_number(value) || json_is_null(value); }
+
+static bool is_kind(json_t *value, enum kind kind) {
+  switch (kind) {
+  case STRING:
+    return json_is_string(value);
+  case NUMBER:
+    return is_number(value);
+  case COUNT:
+    return json_is_integer(value);
+  case TRUTH:
+    return json_is_boolean(value);
+  case LIST:
+    return json_is_array(value);
+  case PAIR:
+    return json_array_size(value) == 2 && is_number(json_array_get(value, 0)) &&
+           is_number(json_array_get(value, 1));
+  }
+  return false;
+}
+
+static size_t check_keys(json_t *object, const struct key *key) {
+  size_t n = 0;
+  for (; key->name; key++, n++)
+    if (!is_kind(json_object_get(object, key->name), key->kind)) fail_msg("%s", key->name);
+  return n;
+}
+
+static void assert_one_of(json_t *value, const char *const *names, int n) {
+  for (int k = 0; k < n; k++)
+    if (strcmp(json_string_value(value), names[k]) == 0) return;
+  fail_msg("%s", json_string_value(value));
+}
+
+static void check_row(json_t *row) {
+  json_t *quantity = json_object_get(row, "quantity"), *test;
+  bool bias = strcmp(json_string_value(quantity), "bias") == 0;
+  size_t index, keys = check_keys(row, cell_keys) + check_keys(row, added_keys);
+  if (bias) keys += check_keys(row, bias_keys);
+  assert_int_equal(json_object_size(row), keys);
+  assert_one_of(quantity, (const char *[]){"variance", "bias"}, 2);
+  assert_one_of(json_object_get(row, "verdict"),
+                (const char *[]){"agree", "disagree", "not-detected", "not-resolvable"}, 4);
+  json_array_foreach(json_object_get(row, "tests"), index, test) {
+    assert_int_equal(json_object_size(test), check_keys(test, test_keys));
+    assert_one_of(json_object_get(test, "verdict"), (const char *[]){"agree", "disagree"}, 2);
+  }
+}
+
+// Agreement, a bias not detected, one run, disagreement.
+static void test_schema(void **state) {
+  (void)state;
+  struct synthetic s[] = {base, base, base, base};
+  s[1].curvature = 0, s[2].runs = 1, s[3].factor = 0.5;
+  for (int k = 0; k < 4; k++) {
+    struct fit fit = synthetic_fit(&s[k], 1, &arena);
+    json_t *root = json_loads(written(&fit, fit_write_json), JSON_REJECT_DUPLICATES, NULL), *row;
+    size_t index;
+    assert_int_equal(json_object_size(root), check_keys(root, top_keys));
+    json_array_foreach(json_object_get(root, "cells"), index, row) check_row(row);
+    assert_int_equal(index, 2);
+    json_decref(root);
+  }
+}
+
+// A rate goes with agreement or disagreement, never with another verdict.
+static void test_no_rate_without_verdict(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.curvature = 0;
+  struct fit fit = synthetic_fit(&s, 1, &arena);
+  json_t *root = json_loads(written(&fit, fit_write_json), 0, NULL);
+  json_t *row = json_array_get(json_object_get(root, "cells"), 1);
+  assert_string_equal(json_string_value(json_object_get(row, "verdict")), "not-detected");
+  json_t *ci = json_object_get(row, "rate_ci95");
+  assert_true(json_is_null(json_object_get(row, "rate")));
+  assert_true(json_is_null(json_object_get(row, "rate_se")));
+  assert_true(json_is_null(json_array_get(ci, 0)) && json_is_null(json_array_get(ci, 1)));
+  assert_true(json_is_real(json_object_get(row, "upper_bound")));
+  json_decref(root);
+}
+
+// Before any scene is read.
+static void test_value_that_is_not_finite(void **state) {
+  (void)state;
+  struct moments iteration[] = {{2, 1, 0.5, 0, 0}, {2, NAN, NAN, NAN, NAN}};
+  struct series series = {.n_iterations = 2, .iteration = iteration};
+  struct probe probe = {.x = 3, .y = 5}, *probes[] = {&probe};
+  struct cell cell = {.scene_path = "none.pbrt"};
+  struct results results = {.directory = "somewhere",
+                            .experiment = {.cell = &cell, .n_cells = 1},
+                            .probe = probes,
+                            .series = &series,
+                            .n_series = 1};
+  struct fit fit;
+  struct problem problem = {0};
+  assert_false(fit_results(&results, &arena, &fit, &problem));
+  assert_string_equal(problem.text,
+                      "somewhere/log.csv: cell 0, probe 3,5, iteration 2 is not finite");
+}
+
 static void test_unknown_is_null(void **state) {
   (void)state;
   struct synthetic s = base;
@@ -143,10 +283,22 @@ static void test_table(void **state) {
   assert_int_equal(count_lines(text), 1 + 2 + 1);
   assert_null(strchr(text, '\033')); // not a terminal
   assert_non_null(strstr(text, "0.6667"));
-  assert_non_null(strstr(text, "fit: written: agree (family-wise level 0.01"));
+  assert_non_null(strstr(text, "fit: written: agree (2 agree; family-wise level 0.01"));
   assert_null(strstr(text, "kernel")); // the same in all rows
   for (const char *line = text; *line; line = strchr(line, '\n') + 1)
     assert_true(strchr(line, '\n') - line <= 110);
+  free(text);
+}
+
+// What there is no fit for says why, and the last line counts the verdicts.
+static void test_table_says_why(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.runs = 1;
+  struct fit fit = synthetic_fit(&s, 1, &arena);
+  char *text = table_of(&fit);
+  assert_non_null(strstr(text, "not-resolvable: one run"));
+  assert_non_null(strstr(text, ": not-resolvable (2 not-resolvable; family-wise"));
   free(text);
 }
 
@@ -173,12 +325,17 @@ static int remove_folder(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       {"fit.json holds every number to the last bit", test_json, 0, 0, 0},
+      {"fit.json has these keys and no others", test_schema, 0, 0, 0},
+      {"a bias that is not detected has no rate", test_no_rate_without_verdict, 0, 0, 0},
+      {"a value that is not finite is a problem with its place", test_value_that_is_not_finite, 0,
+       0, 0},
       {"what is not known is null", test_unknown_is_null, 0, 0, 0},
       {"the same results give the same bytes", test_same_bytes, 0, 0, 0},
       {"curves.csv has a line per checkpoint and quantity", test_curves, 0, 0, 0},
       {"the predicted curves are those of theory 3.2", test_predicted_curves, 0, 0, 0},
       {"the table has a line per row, no colour in a file, at most 110 columns", test_table, 0, 0,
        0},
+      {"the table says why there is no fit", test_table_says_why, 0, 0, 0},
       {"the level is divided over all tests of the run", test_level, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit", tests, make_folder, remove_folder);

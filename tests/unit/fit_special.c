@@ -79,6 +79,27 @@ static void test_tails(void **state) {
   assert_near(special_zeta(2), 1.6449340668482264, 1e-15);
 }
 
+// Tables of Student's t and of F, 5 % and 1 %; with one degree of freedom t is Cauchy's.
+static void test_variance_that_was_estimated(void **state) {
+  (void)state;
+  assert_near(special_t_quantile(0.025, 4), 2.7764, 5e-5);
+  assert_near(special_t_quantile(0.005, 10), 3.1693, 5e-5);
+  assert_near(special_t_two_sided(-3, 1), 1 - 2 * atan(3) / 3.14159265358979323846, 1e-12);
+  assert_near(special_f_upper(5 * 3.3258, 5, 10), 0.05, 5e-6);
+  assert_near(special_f_upper(0, 5, 10), 1, 0);
+}
+
+// Where the normal and chi-squared take over nothing jumps.
+static void test_many_degrees_of_freedom(void **state) {
+  (void)state;
+  for (int z = 1; z <= 5; z++) {
+    double tail = special_t_two_sided(z, 9999), beyond = special_t_two_sided(z, 10001);
+    assert_near(tail / beyond, 1, pow(z * z + 1, 2) / 4e4 + 1e-4);
+  }
+  for (double chi2 = 10; chi2 <= 60; chi2 += 10)
+    assert_near(special_f_upper(chi2, 25, 9999) / special_f_upper(chi2, 25, 10001), 1, 0.05);
+}
+
 static void test_quadrature(void **state) {
   (void)state;
   double x[64], weight[64], sum = 0, power = 0;
@@ -131,6 +152,8 @@ int main(void) {
       {"at relative variance 1 it is exponential", test_deviate_of_exponential, 0, 0, 0},
       {"far tails rise on", test_deviate_far_out, 0, 0, 0},
       {"tails and constants are the known ones", test_tails, 0, 0, 0},
+      {"t and F are the tables'", test_variance_that_was_estimated, 0, 0, 0},
+      {"t becomes normal and F chi-squared", test_many_degrees_of_freedom, 0, 0, 0},
       {"64 nodes integrate x^127 over [0, 1]", test_quadrature, 0, 0, 0},
       {"chi-squared loses what was fitted", test_projection, 0, 0, 0},
       {"bins cover all iterations and hold enough", test_bins_cover_all, 0, 0, 0},
