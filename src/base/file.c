@@ -15,23 +15,18 @@ bool file_read(const char *path, struct arena *arena, struct text *text, struct 
     return problem_set(problem, "%s: is a directory, not a file", path);
   }
   // Read to the end rather than trust the size: the path may be a pipe.
-  ptrdiff_t capacity = info.st_size > 0 ? (ptrdiff_t)info.st_size + 1 : 65536, length = 0;
+  ptrdiff_t capacity = info.st_size > 0 ? (ptrdiff_t)info.st_size + 2 : 65536, length = 0;
   char *data = arena_new(arena, char, capacity);
-  for (;;) {
-    size_t got = fread(data + length, 1, (size_t)(capacity - 1 - length), stream);
-    length += (ptrdiff_t)got;
-    if (length < capacity - 1 || got == 0) {
-      if (feof(stream) || ferror(stream) || got == 0) break;
-    }
-    if (length == capacity - 1) {
-      data = arena_grow(arena, data, capacity, 2 * capacity, 1, 1);
-      capacity *= 2;
-    }
+  for (;;) { // fread stops short only at the end or at an error
+    length += (ptrdiff_t)fread(data + length, 1, (size_t)(capacity - 1 - length), stream);
+    if (length < capacity - 1) break;
+    data = arena_grow(arena, data, capacity, 2 * capacity, 1, 1);
+    capacity *= 2;
   }
   bool bad = ferror(stream);
+  int why = errno;
   fclose(stream);
-  if (bad) return problem_set(problem, "%s: cannot read it: %s", path, strerror(errno));
-  data[length] = 0;
+  if (bad) return problem_set(problem, "%s: cannot read it: %s", path, strerror(why));
   *text = (struct text){data, length};
   return true;
 }
@@ -40,6 +35,7 @@ bool file_exists(const char *path) { return access(path, F_OK) == 0; }
 
 bool file_make_directory(const char *path, struct problem *problem) {
   char part[4096];
+  if (!*path) return problem_set(problem, "a directory without a name cannot be made");
   if (strlen(path) >= sizeof part) return problem_set(problem, "%s: path too long", path);
   strcpy(part, path);
   for (char *at = part + 1;; at++) {
@@ -66,12 +62,13 @@ bool file_begin(struct file_out *out, const char *path, struct problem *problem)
 }
 
 bool file_commit(struct file_out *out, struct problem *problem) {
-  bool ok = fflush(out->stream) == 0 && !ferror(out->stream);
+  // What fails now says why; after an earlier failure errno still does, success never clears it.
+  bool failed = fflush(out->stream) != 0 || ferror(out->stream);
   int why = errno;
-  if (fclose(out->stream) != 0) ok = false;
+  bool closed = fclose(out->stream) == 0;
   out->stream = NULL;
-  if (ok && rename(out->temporary, out->final) == 0) return true;
-  if (ok) why = errno;
+  if (!failed && closed && rename(out->temporary, out->final) == 0) return true;
+  if (!failed) why = errno;
   unlink(out->temporary);
   return problem_set(problem, "%s: cannot write it: %s", out->final, strerror(why));
 }

@@ -3,31 +3,38 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-static void fill(struct problem *problem, int used, const char *format, va_list args) {
-  if (used >= 0 && used < (int)sizeof problem->text)
-    vsnprintf(problem->text + used, sizeof problem->text - (size_t)used, format, args);
+// Behind what is there already; what does not fit is cut.
+static void append(struct problem *problem, const char *format, va_list args) {
+  size_t used = strlen(problem->text);
+  vsnprintf(problem->text + used, sizeof problem->text - used, format, args);
+}
+
+static void append_place(struct problem *problem, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  append(problem, format, args);
+  va_end(args);
 }
 
 bool problem_set(struct problem *problem, const char *format, ...) {
   if (problem->text[0]) return false;
   va_list args;
   va_start(args, format);
-  fill(problem, 0, format, args);
+  append(problem, format, args);
   va_end(args);
   return false;
 }
 
 bool problem_at(struct problem *problem, struct place place, const char *format, ...) {
   if (problem->text[0]) return false;
-  int used = snprintf(problem->text, sizeof problem->text, "%s:", place.file);
-  if (place.line > 0)
-    used += snprintf(problem->text + used, sizeof problem->text - (size_t)used, "%d:%d:",
-                     place.line, place.column);
-  used += snprintf(problem->text + used, sizeof problem->text - (size_t)used, " ");
+  append_place(problem, "%s:", place.file);
+  if (place.line > 0) append_place(problem, "%d:%d:", place.line, place.column);
+  append_place(problem, " ");
   va_list args;
   va_start(args, format);
-  fill(problem, used, format, args);
+  append(problem, format, args);
   va_end(args);
   return false;
 }
