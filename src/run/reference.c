@@ -106,31 +106,37 @@ static char *cache_path(const struct group_plan *plan, const struct cell *cell,
                       (unsigned long long)XXH64(key, strlen(key), 0));
 }
 
+static const char cache_header[] = "x,y,reference,reference_se,samples\n";
+
+// Only a file that is whole: these probes, row by row to the end of the last line.
 static bool cache_read(const char *path, const struct group_plan *plan, struct probe *probe,
                        struct arena scratch) {
   struct text text;
   struct problem ignored = {0};
+  struct probe *read = arena_new(&scratch, struct probe, plan->n_probes);
   if (!file_exists(path) || !file_read(path, &scratch, &text, &ignored)) return false;
-  char *at = strchr(text.data, '\n');
+  if (strncmp(text.data, cache_header, strlen(cache_header)) != 0) return false;
+  const char *at = text.data + strlen(cache_header);
   for (int p = 0; p < plan->n_probes; p++) {
     int used = 0, x, y;
-    if (!at || sscanf(at, " %d,%d,%lf,%lf,%*f%n", &x, &y, &probe[p].reference,
-                      &probe[p].reference_se, &used) != 4)
+    read[p] = probe[p];
+    if (sscanf(at, "%d,%d,%lf,%lf,%*f%n", &x, &y, &read[p].reference, &read[p].reference_se,
+               &used) != 4 ||
+        used == 0 || at[used] != '\n' || x != probe[p].x || y != probe[p].y)
       return false;
-    at = strchr(at + used, '\n');
+    at += used + 1;
   }
+  memcpy(probe, read, (size_t)plan->n_probes * sizeof *probe);
   return true;
 }
 
-static bool cache_write(const char *path, const struct group_plan *plan, const struct probe *probe,
-                        double samples, struct problem *problem) {
-  struct file_out out;
-  if (!file_begin(&out, path, problem)) return false;
-  fputs("x,y,reference,reference_se,samples\n", out.stream);
+static bool cache_write(struct file_out *out, const struct group_plan *plan,
+                        const struct probe *probe, double samples, struct problem *problem) {
+  fputs(cache_header, out->stream);
   for (int p = 0; p < plan->n_probes; p++)
-    fprintf(out.stream, "%d,%d,%.17g,%.17g,%.17g\n", probe[p].x, probe[p].y, probe[p].reference,
+    fprintf(out->stream, "%d,%d,%.17g,%.17g,%.17g\n", probe[p].x, probe[p].y, probe[p].reference,
             probe[p].reference_se, samples);
-  return file_commit(&out, problem);
+  return file_commit(out, problem);
 }
 
 // Doubles the number of samples until every probe's error is small enough. False: interrupted.
@@ -141,7 +147,7 @@ static bool refine(struct reference *reference, const struct run_options *option
   struct progress progress = progress_begin("reference", 1, 0, options->quiet);
   for (uint64_t done = 0, next = FIRST_UNITS;; done = next, next *= 2) {
     compute_round(reference, done, next, threads, arena);
-    if (interrupt_signal()) return false;
+    if (interrupt_signal()) break;
     double se = largest_se(reference, root);
     // Work grows as the inverse square of the error.
     double share = se > 0 ? target * target / (se * se) : 1;
@@ -149,7 +155,7 @@ static bool refine(struct reference *reference, const struct run_options *option
     if (se <= target) break;
   }
   progress_end(&progress);
-  return true;
+  return !interrupt_signal();
 }
 
 bool reference_make(const struct group_plan *plan, const struct cell *cell,
@@ -159,13 +165,18 @@ bool reference_make(const struct group_plan *plan, const struct cell *cell,
   if (strcmp(name, "none") == 0 || strcmp(name, "analytic") == 0) return true;
   char *path = cache_path(plan, cell, directory, &scratch);
   if (cache_read(path, plan, probe, scratch)) return true;
+  struct file_out
+      out; // begun first: a folder that cannot be written to is found out before the work
+  if (!file_make_directory(directory, problem) || !file_begin(&out, path, problem)) return false;
   struct reference reference = reference_of(plan, cell, &scratch);
   struct moments *root = arena_new(&scratch, struct moments, plan->n_probes);
-  if (!refine(&reference, options, root, &scratch)) return false;
+  if (!refine(&reference, options, root, &scratch)) {
+    file_abandon(&out);
+    return false;
+  }
   for (int p = 0; p < plan->n_probes; p++) {
     probe[p].reference = root[p].mean;
     probe[p].reference_se = sqrt(moments_se2(root[p]));
   }
-  return file_make_directory(directory, problem) &&
-         cache_write(path, plan, probe, root[0].n * reference.replicas, problem);
+  return cache_write(&out, plan, probe, root[0].n * reference.replicas, problem);
 }

@@ -22,6 +22,7 @@ struct unit {
 struct units {
   struct unit *item;
   ptrdiff_t count, capacity;
+  double total_s, left_s; // of the groups that have something left: all their blocks; those listed
 };
 
 static double work_of(const struct group_plan *plan, double run_s, uint64_t block) {
@@ -41,11 +42,13 @@ static double measure_run_s(const struct group_plan *plan, struct arena scratch)
   void *state = integrator->new (measure, &scratch);
   integrator->begin(state, 1);
   integrator->step(state, 1, frame); // warms up
-  double started = progress_clock_s(), elapsed = 0, steps = 0;
-  for (; elapsed < 0.05; elapsed = progress_clock_s() - started, steps += PLACES)
-    for (uint64_t place = 0; place < PLACES; place++)
-      integrator->step(state, 1 + (plan->cell->iterations - 1) * place / (PLACES - 1), frame);
-  return elapsed / steps * (double)plan->cell->iterations;
+  double started = progress_clock_s(), elapsed = 0;
+  uint64_t steps = 0;
+  for (; elapsed < 0.05; elapsed = progress_clock_s() - started, steps++) {
+    uint64_t place = 2 * (steps + 1) % PLACES; // the middle first: slow scenes get no further
+    integrator->step(state, 1 + (plan->cell->iterations - 1) * place / (PLACES - 1), frame);
+  }
+  return elapsed / (double)steps * (double)plan->cell->iterations;
 }
 
 static int unit_order(const void *a, const void *b) {
@@ -55,22 +58,30 @@ static int unit_order(const void *a, const void *b) {
   return left->block < right->block ? -1 : 1;
 }
 
-// What is still to be done, the largest first; *done is the work that files already hold.
-static struct units units_left(const struct plan *plan, const char *folder, double *total,
-                               double *done, struct arena *arena) {
-  struct units units = {0};
-  for (int g = 0; g < plan->n_groups; g++) {
-    double run_s = measure_run_s(&plan->group[g], *arena);
-    for (uint64_t b = 0; b < plan->group[g].n_blocks; b++) {
-      double work = work_of(&plan->group[g], run_s, b);
-      *total += work;
-      struct block_time ignored;
-      if (block_exists(&plan->group[g], b, folder, &ignored, *arena))
-        *done += work;
-      else
-        *arena_push(arena, &units) = (struct unit){g, b, work};
-    }
+// The blocks of one group that no file holds.
+static void add_missing(const struct plan *plan, int g, const char *folder, struct units *units,
+                        struct arena *arena) {
+  const struct group_plan *group = &plan->group[g];
+  ptrdiff_t first = units->count;
+  for (uint64_t b = 0; b < group->n_blocks; b++) {
+    struct block_time ignored;
+    if (!block_exists(group, b, folder, &ignored, *arena))
+      *arena_push(arena, units) = (struct unit){g, b, 0};
   }
+  if (units->count == first) return;
+  double run_s = measure_run_s(group, *arena);
+  units->total_s += run_s * (double)group->cell->runs;
+  for (ptrdiff_t k = first; k < units->count; k++) {
+    units->item[k].work = work_of(group, run_s, units->item[k].block);
+    units->left_s += units->item[k].work;
+  }
+}
+
+// What is still to be done, the largest first.
+static struct units units_left(const struct plan *plan, const char *folder, struct arena *arena) {
+  struct units units = {0};
+  for (int g = 0; g < plan->n_groups && !interrupt_signal(); g++)
+    add_missing(plan, g, folder, &units, arena);
   if (units.count) qsort(units.item, (size_t)units.count, sizeof *units.item, unit_order);
   return units;
 }
@@ -142,14 +153,14 @@ static const char *without_slashes(const char *path, struct arena *arena) {
 
 // All blocks that are missing. False: interrupted.
 static bool make_blocks(const struct plan *plan, const char *folder, struct arena *arena) {
-  double total = 0, done = 0;
   const char *name = plan->experiment->name;
-  struct units units = units_left(plan, folder, &total, &done, arena);
+  struct units units = units_left(plan, folder, arena);
   int threads = plan_threads(&plan->options);
   if (!plan->options.quiet)
-    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", name, total - done,
-            (total - done) / threads, threads);
-  struct progress progress = progress_begin(name, total, done, plan->options.quiet);
+    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", name, units.left_s,
+            units.left_s / threads, threads);
+  struct progress progress =
+      progress_begin(name, units.total_s, units.total_s - units.left_s, plan->options.quiet);
   compute_all(plan, folder, &units, &progress);
   progress_end(&progress);
   return !interrupt_signal();

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <dirent.h>
 #include <ftw.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,11 @@ static char *read_text(const char *path) {
   struct problem problem = {0};
   if (!file_read(path, &arena, &text, &problem)) fail_msg("%s", problem.text);
   return text.data;
+}
+
+static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *at) {
+  (void)info, (void)type, (void)at;
+  return remove(path);
 }
 
 // An experiment file NAME.yaml with this text, read.
@@ -296,6 +302,76 @@ static void a_slash_behind_the_directory_changes_nothing(void **state) {
   assert_true(file_exists(path_in("slash/after.yaml")));
 }
 
+// ---- references ----
+
+#define TRACED BEAM "reference: {integrator: path, se: 0.05}\n"
+
+// The only file in the cache of references.
+static const char *cached_reference(void) {
+  DIR *list = opendir(path_in("references"));
+  const char *found = NULL;
+  assert_non_null(list);
+  for (struct dirent *entry; (entry = readdir(list));) {
+    if (entry->d_name[0] == '.') continue;
+    assert_null(found);
+    found = arena_format(&arena, "%s/references/%s", folder, entry->d_name);
+  }
+  closedir(list);
+  return found;
+}
+
+static void remove_references(void) {
+  const char *path = path_in("references");
+  if (file_exists(path)) nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+}
+
+static void a_reference_cut_anywhere_is_made_again(void **state) {
+  (void)state;
+  remove_references();
+  struct results fresh = run("traced", TRACED);
+  const char *path = cached_reference();
+  char *whole = read_text(path);
+  for (int less = 1; less < 40; less += 12) { // the line's end; samples; the standard error
+    write_text(path, arena_format(&arena, "%.*s", (int)strlen(whole) - less, whole));
+    remove(path_in("traced/manifest.json"));
+    struct results again = run("traced", TRACED);
+    assert_memory_equal(again.probe[0], fresh.probe[0], sizeof(struct probe));
+    assert_string_equal(read_text(path), whole);
+  }
+}
+
+static void a_cached_reference_is_used(void **state) {
+  (void)state;
+  remove_references();
+  run("cached", TRACED);
+  replace_in(cached_reference(), "\n32,32,", "\n32,32,7");
+  remove(path_in("cached/manifest.json"));
+  assert_true(run("cached", TRACED).probe[0]->reference >= 7);
+  remove_references();
+}
+
+static void references_of_thousands_of_probes_are_references(void **state) {
+  (void)state;
+  char *probes = "";
+  for (int y = 0; y < 64; y++) { // 65 x 64 > the samples of one step
+    char *row = "";
+    for (int x = 0; x < 65; x++) row = arena_format(&arena, "%s[%d,%d],", row, x + 1, y + 1);
+    probes = arena_format(&arena, "%s%s\n ", probes, row);
+  }
+  write_text(path_in("large.pbrt"),
+             "Film \"rgb\" \"integer xresolution\" 67 \"integer yresolution\" 67\n"
+             "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"
+             "LightSource \"point\" \"point3 from\" [0 0 2]\nMaterial \"diffuse\"\n"
+             "Shape \"disk\" \"float radius\" 3\n");
+  struct results results =
+      run("thousands", arena_format(&arena,
+                                    "scene: %s\nradius: 0.3\nphotons: 9\niterations: 1\nruns: 1\n"
+                                    "reference: {integrator: path, se: 1}\nprobes: [%s]\n",
+                                    path_in("large.pbrt"), probes));
+  for (int p = 0; p < 64 * 65; p++) assert_true(results.probe[0][p].reference > 0);
+  remove_references();
+}
+
 // ---- checkpoints of the log ----
 
 static void averages_are_logged_ten_times_a_decade_and_at_the_end(void **state) {
@@ -345,11 +421,6 @@ static void a_film_of_more_pixels_than_can_be_numbered_is_refused(void **state) 
 
 // ---- the program ----
 
-static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *at) {
-  (void)info, (void)type, (void)at;
-  return remove(path);
-}
-
 static int make_folder(void **state) {
   (void)state;
   arena = arena_reserve();
@@ -377,6 +448,9 @@ int main(void) {
       cmocka_unit_test(a_run_goes_on_where_it_stopped_and_keeps_the_times),
       cmocka_unit_test(another_experiment_leaves_unfinished_blocks_alone),
       cmocka_unit_test(a_slash_behind_the_directory_changes_nothing),
+      cmocka_unit_test(a_reference_cut_anywhere_is_made_again),
+      cmocka_unit_test(a_cached_reference_is_used),
+      cmocka_unit_test(references_of_thousands_of_probes_are_references),
       cmocka_unit_test(averages_are_logged_ten_times_a_decade_and_at_the_end),
       cmocka_unit_test(a_probe_that_sees_nothing_is_refused_before_anything_is_made),
       cmocka_unit_test(a_film_of_more_pixels_than_can_be_numbered_is_refused),
