@@ -1,115 +1,11 @@
-// Fisher scoring of the gamma quasi-likelihood: S_i^2 has mean V_i and variance phi_i V_i^2 with
-// phi_i = 2/(K-1) + kappa_i/K. Weights come from the fitted V_i, never from S_i^2 itself, which is
-// small where it happens to be small (theory 4.4).
+// The rate with the coefficients free, the coefficients with the rate held at theory; how far the
+// measured variances scatter by themselves; whether the model fits them.
 #include "analysis/fit_variance.h"
 
 #include "analysis/special.h"
+#include "analysis/variance_model.h"
 
 #include <math.h>
-
-// V_i = coefficient[0] (divergent / t [+ rest]) [+ coefficient[1] rest], t = rho(rate) /
-// rho(theory).
-struct model {
-  const struct prediction *theory;
-  const double *measured, *dispersion; // S_i^2, phi_i
-  int n_coefficients;                  // 1 in closed form
-  double *log_ratio, *slope;           // scratch, [n]
-};
-
-struct point {
-  double coefficient[2], rate;
-};
-
-struct row {
-  double variance, by[3]; // V_i and its derivatives by the coefficients and the rate
-};
-
-static struct row model_row(const struct model *model, const struct point *at, uint64_t j) {
-  const struct prediction *theory = model->theory;
-  double divergent = theory->divergent[j] * exp(-model->log_ratio[j]);
-  double rest = theory->rest ? theory->rest[j] : 0;
-  struct row row;
-  row.by[0] = theory->closed_form ? divergent + rest : divergent;
-  row.by[1] = rest;
-  row.variance = at->coefficient[0] * row.by[0];
-  if (model->n_coefficients == 2) row.variance += at->coefficient[1] * rest;
-  row.by[model->n_coefficients] = -at->coefficient[0] * divergent * model->slope[j];
-  return row;
-}
-
-// Score, information and value of the quasi-likelihood; false where a variance is not positive.
-static bool evaluate(const struct model *model, const struct point *at, bool free_rate,
-                     struct normal_equations *eq, double *value) {
-  *eq = (struct normal_equations){.n = model->n_coefficients + free_rate};
-  *value = 0;
-  family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
-  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
-    struct row row = model_row(model, at, j);
-    if (!(row.variance > 0)) return false;
-    double ratio = model->measured[j] / row.variance, weight = 1 / model->dispersion[j];
-    for (int a = 0; a < eq->n; a++) row.by[a] /= row.variance;
-    normal_add(eq, row.by, ratio - 1, weight);
-    *value -= weight * (ratio + log(row.variance));
-  }
-  return true;
-}
-
-static struct point moved(const struct model *model, struct point from, const double *step,
-                          double length, bool free_rate) {
-  for (int a = 0; a < model->n_coefficients; a++) from.coefficient[a] += length * step[a];
-  if (free_rate) from.rate += length * step[model->n_coefficients];
-  return from;
-}
-
-// Halves the step until the quasi-likelihood rises. Within 1e-3 standard errors of the top its
-// rise is lost in rounding, and the whole step is taken.
-static bool climb_once(const struct model *model, bool free_rate, const double *step, bool near,
-                       struct point *at, struct normal_equations *eq, double *value) {
-  for (double length = 1; length > 0x1p-40; length /= 2) {
-    struct point next = moved(model, *at, step, length, free_rate);
-    struct normal_equations next_eq;
-    double next_value;
-    if (!evaluate(model, &next, free_rate, &next_eq, &next_value)) continue;
-    if (!near && next_value < *value) continue;
-    *at = next, *eq = next_eq, *value = next_value;
-    return true;
-  }
-  return false;
-}
-
-// Climbs from *at to the top; then *eq is the information there. Done when the next step is worth
-// less than 1e-6 standard errors.
-static bool climb(const struct model *model, bool free_rate, struct point *at,
-                  struct normal_equations *eq) {
-  double value, step[SOLVE_MAX];
-  if (!evaluate(model, at, free_rate, eq, &value)) return false;
-  for (int round = 0; round < 100; round++) {
-    if (!normal_solve(eq, step, NULL)) return false;
-    double worth = 0;
-    for (int a = 0; a < eq->n; a++) worth += step[a] * eq->g[a];
-    if (worth < 1e-12) return true;
-    if (!climb_once(model, free_rate, step, worth < 1e-6, at, eq, &value)) return false;
-  }
-  return false;
-}
-
-static struct point start(const struct model *model) {
-  double sum = 0, weight = 0;
-  for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
-    double shape = model->theory->divergent[j];
-    if (model->theory->closed_form) shape += model->theory->rest[j];
-    sum += model->measured[j] / shape / model->dispersion[j];
-    weight += 1 / model->dispersion[j];
-  }
-  return (struct point){{sum / weight, 0}, model->theory->family.theory};
-}
-
-// Iterations that are not fitted keep what was measured.
-static void fill_variance(const struct model *model, const struct point *at, double *variance) {
-  family_ratio(&model->theory->family, at->rate, model->log_ratio, model->slope);
-  for (uint64_t j = 0; j < model->theory->n; j++)
-    variance[j] = j < model->theory->first ? model->measured[j] : model_row(model, at, j).variance;
-}
 
 // ---- kurtosis ----
 
@@ -158,8 +54,8 @@ static void fill_worth(double runs, const double *dispersion, uint64_t n, double
   }
 }
 
-static struct chi2 lack_of_fit(const struct model *model, const struct point *at, bool free_rate,
-                               const double *worth, struct arena scratch) {
+static struct chi2 lack_of_fit(const struct variance_model *model, const struct variance_point *at,
+                               bool free_rate, const double *worth, struct arena scratch) {
   uint64_t n = model->theory->n;
   int parameters = model->n_coefficients + free_rate;
   struct bins bins = bins_new(worth, model->theory->first, n, 1, &scratch);
@@ -170,7 +66,7 @@ static struct chi2 lack_of_fit(const struct model *model, const struct point *at
   for (int b = 0; b < bins.n; b++) {
     double held = 0, ratio = 0;
     for (; j < bins.end[b]; j++) {
-      struct row row = model_row(model, at, j);
+      struct variance_row row = variance_model_row(model, at, j);
       double information = 1 / model->dispersion[j];
       held += information;
       ratio += information * model->measured[j] / row.variance;
@@ -185,24 +81,27 @@ static struct chi2 lack_of_fit(const struct model *model, const struct point *at
 
 // ---- all of it ----
 
-static bool fit_rate(const struct model *model, struct variance_fit *fit, struct point *best) {
+static bool fit_rate(const struct variance_model *model, struct variance_fit *fit,
+                     struct variance_point *best) {
   struct normal_equations eq;
   double unused[SOLVE_MAX], covariance[SOLVE_MAX][SOLVE_MAX];
-  if (!climb(model, true, best, &eq) || !normal_solve(&eq, unused, covariance)) return false;
+  if (!variance_model_climb(model, true, best, &eq) || !normal_solve(&eq, unused, covariance))
+    return false;
   fit->rate = best->rate;
   fit->rate_se = sqrt(covariance[eq.n - 1][eq.n - 1]);
-  fill_variance(model, best, fit->variance);
+  variance_model_fill(model, best, fit->variance);
   return true;
 }
 
-static bool fit_coefficient(const struct model *model, struct variance_fit *fit,
-                            struct point *held) {
+static bool fit_coefficient(const struct variance_model *model, struct variance_fit *fit,
+                            struct variance_point *held) {
   struct normal_equations eq;
   double unused[SOLVE_MAX], covariance[SOLVE_MAX][SOLVE_MAX];
-  if (!climb(model, false, held, &eq) || !normal_solve(&eq, unused, covariance)) return false;
+  if (!variance_model_climb(model, false, held, &eq) || !normal_solve(&eq, unused, covariance))
+    return false;
   fit->coefficient = held->coefficient[0];
   fit->coefficient_se = sqrt(covariance[0][0]);
-  fill_variance(model, held, fit->expected);
+  variance_model_fill(model, held, fit->expected);
   return true;
 }
 
@@ -267,7 +166,7 @@ struct variance_fit fit_variance(const struct prediction *theory, const struct m
   fit.expected = arena_new(arena, double, n);
   fit.dispersion = arena_new(arena, double, n);
   fit.worth = arena_new(arena, double, n);
-  struct model model = {
+  struct variance_model model = {
       .theory = theory,
       .measured = measured,
       .dispersion = fit.dispersion,
@@ -276,17 +175,17 @@ struct variance_fit fit_variance(const struct prediction *theory, const struct m
       .slope = arena_new(arena, double, n),
   };
   fill_dispersion(theory, runs, 0, fit.dispersion);
-  struct point held = start(&model);
+  struct variance_point held = variance_model_start(&model);
   if (!fit_coefficient(&model, &fit, &held)) return fit;
   if (!theory->kurtosis) {
     fill_dispersion(theory, runs, kurtosis_scale(theory, iteration, fit.expected), fit.dispersion);
     if (!fit_coefficient(&model, &fit, &held)) return fit;
   }
-  struct point best = held;
+  struct variance_point best = held;
   bool rate_found = fit_rate(&model, &fit, &best);
   if (!rate_found) {
     best = held;
-    fill_variance(&model, &best, fit.variance);
+    variance_model_fill(&model, &best, fit.variance);
   }
   fill_worth(runs, fit.dispersion, theory->n, fit.worth);
   fit.lack_of_fit = lack_of_fit(&model, &best, rate_found, fit.worth, *arena);
