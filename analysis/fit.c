@@ -30,23 +30,24 @@ static enum verdict row_verdict(const struct fit_row *row) {
   return row->resolved ? VERDICT_AGREE : VERDICT_NOT_RESOLVABLE;
 }
 
-// A bias that theory says must show (twice the threshold of detection) and does not is not evidence
-// for theory, even where its coefficient is not rejected.
-static bool missed(const struct fit_row *row) {
+// A row that speaks against theory without contradicting it: a bias that theory says must show
+// (twice the threshold of detection) and does not, or a lack of fit.
+static bool is_doubtful(const struct fit_row *row) {
+  if (row->verdict == VERDICT_NOT_RESOLVABLE) return rejects(row, true);
   return row->verdict == VERDICT_NOT_DETECTED && row->expected_snr >= 2 * fit_detection_snr;
 }
 
-// Any disagreement decides; otherwise the run agrees if any row does and none is missed. Rows that
-// cannot tell do not spoil those that can.
+// Any disagreement decides; otherwise the run agrees if any row does and none is doubtful. Rows
+// that cannot tell do not spoil those that can.
 static enum verdict run_verdict(const struct fit *fit) {
   int count[N_VERDICTS] = {0};
-  bool any_missed = false;
+  bool any_doubtful = false;
   for (int r = 0; r < fit->n_rows; r++) {
     count[fit->row[r].verdict]++;
-    any_missed |= missed(&fit->row[r]);
+    any_doubtful |= is_doubtful(&fit->row[r]);
   }
   if (count[VERDICT_DISAGREE]) return VERDICT_DISAGREE;
-  if (any_missed) return VERDICT_NOT_RESOLVABLE;
+  if (any_doubtful) return VERDICT_NOT_RESOLVABLE;
   if (count[VERDICT_AGREE]) return VERDICT_AGREE;
   return count[VERDICT_NOT_DETECTED] ? VERDICT_NOT_DETECTED : VERDICT_NOT_RESOLVABLE;
 }

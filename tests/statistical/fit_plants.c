@@ -200,6 +200,24 @@ static void test_no_rate_without_fit(void **state) {
   assert_int_equal(fit.row[0].verdict, VERDICT_NOT_RESOLVABLE);
   assert_false(isfinite(fit.row[0].rate) || isfinite(fit.row[0].rate_se));
   assert_false(isfinite(fit.row[0].rate_lo) || isfinite(fit.row[0].rate_hi));
+  assert_int_equal(fit.row[1].verdict, VERDICT_AGREE); // which does not make up for it
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
+}
+
+// Theory expects a bias of seven standard errors or so, and there is none.
+static void test_missed_bias(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: missed bias", s.iterations = 300, s.curvature = 0.13;
+  struct prediction theory = synthetic_prediction(&s, &arena);
+  s.curvature = 0;
+  for (uint64_t e = 1; e <= 50; e++) {
+    struct arena scratch = arena;
+    struct fit fit = synthetic_fit_with(&s, &theory, e, &scratch);
+    assert_true(fit.row[1].expected_snr > 6 && fit.row[1].expected_snr < 9);
+    assert_int_not_equal(fit.row[1].verdict, VERDICT_AGREE);
+    assert_int_not_equal(fit.verdict, VERDICT_AGREE);
+  }
 }
 
 int main(void) {
@@ -216,6 +234,7 @@ int main(void) {
       {"one iteration has no rate but is tested", test_one_iteration, 0, 0, 0},
       {"black where there is light disagrees, unless none was to be expected", test_black, 0, 0, 0},
       {"light where there is none disagrees", test_light_in_the_dark, 0, 0, 0},
+      {"a bias that theory expects and that is not there never agrees", test_missed_bias, 0, 0, 0},
       {"where the model does not fit no rate is stated", test_no_rate_without_fit, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit_plants", tests, NULL, NULL);
