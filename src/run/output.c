@@ -29,8 +29,28 @@ static char *fingerprint_text(const struct plan *plan, struct arena *arena) {
   return arena_format(arena, "%016" PRIx64, plan->fingerprint);
 }
 
+// Fields of a CSV file are not quoted, and JSON is UTF-8.
+static bool check_name(const char *name, struct problem *problem) {
+  json_t *text = json_string(name);
+  bool plain = text && !strpbrk(name, ",\"\\\n\r");
+  json_decref(text);
+  return plain ||
+         problem_set(problem,
+                     "\"%s\" cannot be the name of an experiment or a scene: outputs have no "
+                     "place for commas, quotes, backslashes and what is not UTF-8",
+                     name);
+}
+
+bool output_check_names(const struct plan *plan, struct problem *problem) {
+  for (int c = 0; c < plan->experiment->n_cells; c++)
+    if (!check_name(plan->experiment->cell[c].scene, problem)) return false;
+  return check_name(plan->experiment->name, problem);
+}
+
 bool output_is_complete(const struct plan *plan, const char *directory, struct arena scratch) {
-  return strcmp(manifest_fingerprint(directory, &scratch), fingerprint_text(plan, &scratch)) == 0;
+  return strcmp(manifest_fingerprint(directory, &scratch), fingerprint_text(plan, &scratch)) == 0 &&
+         file_exists(path_of(directory, "log.csv", &scratch)) &&
+         file_exists(path_of(directory, "probes.csv", &scratch));
 }
 
 bool output_set_aside(const struct plan *plan, const char *directory, struct arena scratch,

@@ -10,6 +10,9 @@ struct outputs {
   const char *directory;
 };
 
+// Whether the names of the experiment and its scenes can stand in the outputs.
+bool output_check_names(const struct plan *, struct problem *);
+
 // Whether the directory holds the finished results of exactly this plan.
 bool output_is_complete(const struct plan *, const char *directory, struct arena scratch);
 

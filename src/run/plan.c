@@ -1,5 +1,6 @@
 #include "run/plan.h"
 
+#include "base/file.h"
 #include "base/version.h"
 #include "density/grid.h"
 #include "numeric/elementary.h"
@@ -176,14 +177,26 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
   return true;
 }
 
+// The commit, which stands for the program whatever compiled it, so that machines can share work. A
+// program of changed or unknown source is told apart by its bytes.
+static void hash_program(XXH64_state_t *state, struct arena scratch) {
+  const char *dirty = strstr(photonlab_version, "-dirty");
+  struct text program;
+  struct problem ignored = {0};
+  XXH64_update(state, photonlab_version, strlen(photonlab_version));
+  if (!dirty && strcmp(photonlab_version, "unknown") != 0) return;
+  if (file_read("/proc/self/exe", &scratch, &program, &ignored))
+    XXH64_update(state, program.data, (size_t)program.length);
+}
+
 // Everything that may change a number: the experiment's text, quality and seeds, the scenes, and
 // the program. What is skipped changes none, but it does change the images' channels.
-static void plan_fingerprint(struct plan *plan) {
+static void plan_fingerprint(struct plan *plan, struct arena scratch) {
   XXH64_state_t *state = XXH64_createState();
   XXH64_reset(state, 0);
   XXH64_update(state, plan->experiment->text.data, (size_t)plan->experiment->text.length);
   XXH64_update(state, plan->experiment->quality, strlen(plan->experiment->quality));
-  XXH64_update(state, photonlab_version, strlen(photonlab_version));
+  hash_program(state, scratch);
   for (int s = 0; s < plan->n_scenes; s++)
     XXH64_update(state, &plan->scene[s].scene.hash, sizeof plan->scene[s].scene.hash);
   for (int c = 0; c < plan->experiment->n_cells; c++)
@@ -206,7 +219,7 @@ bool plan_make(const struct experiment *experiment, struct run_options options, 
     plan->group[g].number = g;
     if (!plan_group(plan, &group[g], &plan->group[g], arena, problem)) return false;
   }
-  plan_fingerprint(plan);
+  plan_fingerprint(plan, *arena);
   return true;
 }
 

@@ -171,8 +171,10 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
                                 struct problem *problem) {
   struct plan plan;
   const char *directory = without_slashes(path, arena);
-  if (!plan_make(experiment, options, arena, &plan, problem)) return RUN_FAILED;
+  if (!plan_make(experiment, options, arena, &plan, problem) || !output_check_names(&plan, problem))
+    return RUN_FAILED;
   if (output_is_complete(&plan, directory, *arena)) {
+    block_remove_all(&plan, directory, *arena); // if it was killed between its last two steps
     if (!options.quiet) fprintf(stderr, "photonlab: %s is up to date\n", directory);
     return RUN_DONE;
   }

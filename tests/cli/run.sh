@@ -77,6 +77,14 @@ check 'and gives the same bytes' cmp "$scratch/whole/log.csv" "$scratch/broken/l
 cp "$scratch/one/log.csv" "$scratch/kept"
 check 'a finished experiment is not run again' run one
 check 'and is left as it was' cmp "$scratch/one/log.csv" "$scratch/kept"
+# A program of uncommitted source is its bytes; one of a commit is that commit, whatever compiled it.
+cp "$photonlab" "$scratch/rebuilt" && echo >> "$scratch/rebuilt"
+"$scratch/rebuilt" run "$scratch/long.yaml" -o "$scratch/whole" > /dev/null 2> "$scratch/said"
+case $("$photonlab" --version) in
+*-dirty | *unknown) expected='held other results' ;;
+*) expected='up to date' ;;
+esac
+check 'another program of uncommitted source runs again' grep -q "$expected" "$scratch/said"
 run one --seed 2
 check 'results of something else are set aside, not lost' cmp "$scratch/one.1/log.csv" "$scratch/kept"
 

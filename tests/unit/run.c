@@ -278,6 +278,16 @@ static void a_run_goes_on_where_it_stopped_and_keeps_the_times(void **state) {
   assert_false(file_exists(path_in("resumed/blocks")));
 }
 
+static void blocks_that_a_killed_program_could_not_remove_go_with_the_next_call(void **state) {
+  (void)state;
+  struct experiment experiment = experiment_of("killed", BEAM "parts: [{runs: 20}]\n");
+  struct plan plan = plan_of(&experiment);
+  run_into(&experiment, path_in("killed"));
+  begin_blocks(&plan, path_in("killed"));
+  run_into(&experiment, path_in("killed"));
+  assert_false(file_exists(path_in("killed/blocks")));
+}
+
 static void another_experiment_leaves_unfinished_blocks_alone(void **state) {
   (void)state;
   struct experiment first = experiment_of("first", BEAM "parts: [{runs: 20}]\n");
@@ -291,6 +301,15 @@ static void another_experiment_leaves_unfinished_blocks_alone(void **state) {
   run_into(&third, path_in("shared")); // finished results are set aside, the blocks stay
   assert_true(file_exists(path_in("shared.1/log.csv")));
   assert_true(block_exists(&plan.group[0], 1, blocks, &time, arena));
+}
+
+static void results_that_lost_a_file_are_not_up_to_date(void **state) {
+  (void)state;
+  run("lost", BEAM);
+  char *log = read_text(path_in("lost/log.csv"));
+  remove(path_in("lost/log.csv"));
+  run("lost", BEAM);
+  assert_string_equal(read_text(path_in("lost/log.csv")), log);
 }
 
 static void a_slash_behind_the_directory_changes_nothing(void **state) {
@@ -407,6 +426,16 @@ static void a_probe_that_sees_nothing_is_refused_before_anything_is_made(void **
           "disk.pbrt: probe [0, 1] sees no surface");
 }
 
+static void a_name_that_would_break_the_outputs_is_refused(void **state) {
+  (void)state;
+  refuses("a,b", BEAM, "\"a,b\" cannot be the name");
+  refuses("a\"b", BEAM, "cannot be the name");
+  refuses("caf\xe9", BEAM, "cannot be the name");
+  write_text(path_in("a,b.pbrt"), read_text("scenes/plane-uniform-beam.pbrt"));
+  refuses("scene-name", arena_format(&arena, "scene: \"%s\"\nradius: 0.3\n", path_in("a,b.pbrt")),
+          "\"a,b\" cannot be the name");
+}
+
 static void a_film_of_more_pixels_than_can_be_numbered_is_refused(void **state) {
   (void)state;
   write_text(path_in("film.pbrt"),
@@ -446,13 +475,16 @@ int main(void) {
       cmocka_unit_test(an_edited_experiment_is_refused),
       cmocka_unit_test(a_block_with_any_byte_changed_or_cut_is_none),
       cmocka_unit_test(a_run_goes_on_where_it_stopped_and_keeps_the_times),
+      cmocka_unit_test(blocks_that_a_killed_program_could_not_remove_go_with_the_next_call),
       cmocka_unit_test(another_experiment_leaves_unfinished_blocks_alone),
+      cmocka_unit_test(results_that_lost_a_file_are_not_up_to_date),
       cmocka_unit_test(a_slash_behind_the_directory_changes_nothing),
       cmocka_unit_test(a_reference_cut_anywhere_is_made_again),
       cmocka_unit_test(a_cached_reference_is_used),
       cmocka_unit_test(references_of_thousands_of_probes_are_references),
       cmocka_unit_test(averages_are_logged_ten_times_a_decade_and_at_the_end),
       cmocka_unit_test(a_probe_that_sees_nothing_is_refused_before_anything_is_made),
+      cmocka_unit_test(a_name_that_would_break_the_outputs_is_refused),
       cmocka_unit_test(a_film_of_more_pixels_than_can_be_numbered_is_refused),
   };
   return cmocka_run_group_tests_name("run", tests, make_folder, remove_folder);
