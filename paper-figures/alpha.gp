@@ -1,6 +1,7 @@
 # experiments: alpha
 # Variance and |bias| of the average of N iterations against N, one curve an alpha. Points: measured
 # over runs with 95 % intervals; lines: the predicted average (no slope is fitted to these points).
+# Where theory has no closed form (the box) a line has theory's exponent and fitted constants.
 # A bias below two standard errors is drawn hollow at its upper limit, with an arrow down.
 #   gnuplot -c paper-figures/alpha.gp RESULTS_DIR     reads curves.csv, writes figures/alpha.*
 scenes = "plane-uniform-beam plane-quadratic-beam plane-point-light cornell-box"
@@ -26,20 +27,23 @@ set datafile separator comma
 set datafile columnheaders
 
 # Each scene is shown at the first of its probes in the file; the alphas are those of the file.
-probe = ""; alphas = ""; rows = ""; biased = ""; n_max = 1
+probe = ""; alphas = ""; rows = ""; lines = ""; biased = ""; n_max = 1
 alpha_text(a) = abs(a - 2./3) < 1e-9 ? "2/3" : sprintf("%g", a)
 add_probe(s, x, y) = strstrt(probe, "|".s.":") ? 0 : (probe = probe."|".s.":".x.",".y."|", 1)
 shown(s, x, y) = strstrt(probe, "|".s.":".x.",".y."|") > 0
 add_alpha(a) = strstrt(alphas, " ".alpha_text(a)." ") ? 0 : (alphas = alphas." ".alpha_text(a)." ", 1)
 row_name(s, q, a) = "|".s.":".q.":".a."|"
 add_row(r) = !strstrt(rows, r) ? (rows = rows.r, 1) : 0
+add_line(r, p) = p != p || strstrt(lines, r) ? 0 : (lines = lines.r, 1) # NaN is not itself
 set xrange [-1:1]
 set yrange [-1:1]
 add_biased(s, q, p) = q eq "variance" || p == 0 || strstrt(biased, s) ? 0 : (biased = biased." ".s, 1)
 set table $seen
 plot data using (add_probe(strcol("scene"), strcol("x"), strcol("y")), \
   add_alpha(column("alpha")), !shown(strcol("scene"), strcol("x"), strcol("y")) ? 0 : \
-    add_row(row_name(strcol("scene"), strcol("quantity"), alpha_text(column("alpha")))), \
+    add_row(row_name(strcol("scene"), strcol("quantity"), alpha_text(column("alpha")))) + \
+    add_line(row_name(strcol("scene"), strcol("quantity"), alpha_text(column("alpha"))), \
+      column("predicted")), \
   add_biased(strcol("scene"), strcol("quantity"), column("predicted")), \
   n_max = column("N") > n_max ? column("N") : n_max, 0):(0) with points
 unset table
@@ -111,10 +115,13 @@ do for [terminal_name in "pdf svg png"] {
       if (c == 1) {
         set ylabel row == 1 ? "variance of the average" : "|bias| of the average" offset 1.2,0
       } else { unset ylabel }
-      here = ""; absent = ""
+      here = ""; absent = ""; unresolved = ""
       do for [j = 1:n_alphas] {
         if (strstrt(rows, row_name(scene, quantity, word(alphas, j)))) {
           here = here." ".j
+          if (!strstrt(lines, row_name(scene, quantity, word(alphas, j)))) {
+            unresolved = unresolved." ".word(alphas, j)
+          }
           eval "set table ".series(j)
           plot data using (column("N")):(abs(column("measured"))):(lower(quantity)):(upper(quantity)):\
             (drawn(column("predicted"))):(found(quantity)) \
@@ -123,6 +130,7 @@ do for [terminal_name in "pdf svg png"] {
         } else { absent = absent." ".word(alphas, j) }
       }
       note = row == 2 && !strstrt(biased, scene) ? "predicted: no bias" : ""
+      if (unresolved ne "") { note = "rate not resolved: α =".unresolved }
       if (absent ne "") { note = "not resolvable: α =".absent }
       set label 1 note at graph 0.05,0.07 left textcolor "#666666" font ",7"
       set datafile separator whitespace
@@ -148,7 +156,7 @@ do for [terminal_name in "pdf svg png"] {
   set tmargin at screen 0.09
   set bmargin at screen 0.04
   unset logscale; unset border; unset xtics; unset ytics; unset xlabel; unset ylabel; unset title; unset grid
-  set label 1 "points: measured, 95 % intervals; hollow: |bias| < 2 SE, upper limit; lines: predicted" \
+  set label 1 "points: measured, 95 % intervals; hollow: |bias| < 2 SE, upper limit; lines: predicted (box: constants fitted)" \
     at screen 0.5,0.02 center textcolor "#444444" font ",7"
   set key center center horizontal samplen 2.2 width 2
   plot [0:1] [0:1] for [j = 1:n_alphas] NaN with linespoints linewidth 0.9 pointtype full(j) \
