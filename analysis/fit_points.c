@@ -38,10 +38,12 @@ void fit_variance_points(const struct series *series, const struct variance_fit 
     double n = (double)series->checkpoint[c], runs = series->average[c].n;
     advance_variance(&sums, series->checkpoint[c], series, v);
     struct fit_point *point = new_point(fit, row, series->checkpoint[c]);
-    double spread = 2 / (runs - 1) + sums.fourth / (sums.variance * sums.variance);
     point->measured = moments_variance(series->average[c]);
-    point->lower = point->measured / special_gamma_quantile(0.975, spread);
-    point->upper = point->measured / special_gamma_quantile(0.025, spread);
+    if (sums.variance > 0) { // else no photon yet, before the first iteration that is fitted
+      double spread = 2 / (runs - 1) + sums.fourth / (sums.variance * sums.variance);
+      point->lower = point->measured / special_gamma_quantile(0.975, spread);
+      point->upper = point->measured / special_gamma_quantile(0.025, spread);
+    }
     point->pooled = sums.measured / (n * n);
     point->predicted = sums.expected / unit / (n * n);
   }

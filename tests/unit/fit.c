@@ -247,6 +247,24 @@ static void test_curves(void **state) {
   }
 }
 
+static double late(double alpha, double rho, uint64_t i) {
+  (void)alpha;
+  return i <= 150 ? 1e-12 : rho;
+}
+
+// At the first checkpoint no photon was found, and the fit begins later.
+static void test_curve_that_begins_dark(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.closed_form = false, s.r2 = late;
+  struct prediction theory = synthetic_prediction(&s, &arena);
+  theory.first = 200;
+  struct fit fit = synthetic_fit_with(&s, &theory, 1, &arena);
+  assert_true(fit.point[0].measured == 0 && isnan(fit.point[0].lower));
+  assert_true(fit.point[1].lower < fit.point[1].measured);
+  assert_int_equal(fit.row[0].first, 201);
+}
+
 // The predicted curves are theory 3.2's: (A S- + C N) / N^2 and b_1 S+ / N, for the quadratic
 // profile. C = (R_2 Laplacian / 4 q - mu^2) / N_e; with r_1 = 1 and E = 1 - d^2 / 2 the box has
 // A = 1 / lambda_1, b_1 = -1/4 and the middle term -A / 4; mu^2 / N_e is 1e-9.
@@ -332,6 +350,7 @@ int main(void) {
       {"what is not known is null", test_unknown_is_null, 0, 0, 0},
       {"the same results give the same bytes", test_same_bytes, 0, 0, 0},
       {"curves.csv has a line per checkpoint and quantity", test_curves, 0, 0, 0},
+      {"a curve may begin before any light", test_curve_that_begins_dark, 0, 0, 0},
       {"the predicted curves are those of theory 3.2", test_predicted_curves, 0, 0, 0},
       {"the table has a line per row, no colour in a file, at most 110 columns", test_table, 0, 0,
        0},
