@@ -107,10 +107,11 @@ static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct pro
   measure->n_points = plan->n_probes;
   measure->pixel = film ? plan_film(&plan->loaded->scene, &measure->n_points, arena, problem)
                         : plan->probe_pixel;
+  if (!measure->pixel) return false;
   for (int p = 0; p < plan->n_probes; p++)
     plan->probe_point[p] =
         film ? plan->probe_pixel[p].y * camera->width + plan->probe_pixel[p].x : p;
-  return measure->pixel != NULL;
+  return true;
 }
 
 static bool check_probes_hit(const struct group_plan *plan, struct arena scratch,
