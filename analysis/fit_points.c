@@ -29,6 +29,14 @@ static void advance_variance(struct sums *sums, uint64_t n, const struct series 
   sums->n = n;
 }
 
+// None where so little light is expected that an interval would not hold the estimate.
+static void set_interval(struct fit_point *point, double relative_variance) {
+  double lower = point->measured / special_gamma_quantile(0.975, relative_variance);
+  if (!(lower <= point->measured)) return;
+  point->lower = lower;
+  point->upper = point->measured / special_gamma_quantile(0.025, relative_variance);
+}
+
 // Where theory knows its constants the curve is theory's own, else the fit with theory's exponent.
 void fit_variance_points(const struct series *series, const struct variance_fit *v,
                          const struct fit_row *row, struct fit *fit) {
@@ -39,11 +47,8 @@ void fit_variance_points(const struct series *series, const struct variance_fit 
     advance_variance(&sums, series->checkpoint[c], series, v);
     struct fit_point *point = new_point(fit, row, series->checkpoint[c]);
     point->measured = moments_variance(series->average[c]);
-    if (sums.variance > 0) { // else no photon yet, before the first iteration that is fitted
-      double spread = 2 / (runs - 1) + sums.fourth / (sums.variance * sums.variance);
-      point->lower = point->measured / special_gamma_quantile(0.975, spread);
-      point->upper = point->measured / special_gamma_quantile(0.025, spread);
-    }
+    if (sums.variance > 0) // else no photon yet, before the first iteration that is fitted
+      set_interval(point, 2 / (runs - 1) + sums.fourth / (sums.variance * sums.variance));
     point->pooled = sums.measured / (n * n);
     point->predicted = sums.expected / unit / (n * n);
   }

@@ -265,6 +265,24 @@ static void test_curve_that_begins_dark(void **state) {
   assert_int_equal(fit.row[0].first, 201);
 }
 
+// A photon that was hardly to be expected (0.02 in all): no interval rather than one without it.
+static void test_interval_of_a_lucky_photon(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: lucky", s.photons_1 = 1e-3, s.iterations = 10, s.runs = 2, s.curvature = 0;
+  int found = 0;
+  for (uint64_t e = 1; e <= 500; e++) {
+    struct arena scratch = arena;
+    struct fit fit = synthetic_fit(&s, e, &scratch);
+    for (int p = 0; p < fit.n_points; p++) {
+      const struct fit_point *point = &fit.point[p];
+      assert_false(point->measured < point->lower || point->measured > point->upper);
+      found += point->row->quantity == QUANTITY_VARIANCE && point->measured > 0;
+    }
+  }
+  assert_true(found > 0);
+}
+
 // The predicted curves are theory 3.2's: (A S- + C N) / N^2 and b_1 S+ / N, for the quadratic
 // profile. C = (R_2 Laplacian / 4 q - mu^2) / N_e; with r_1 = 1 and E = 1 - d^2 / 2 the box has
 // A = 1 / lambda_1, b_1 = -1/4 and the middle term -A / 4; mu^2 / N_e is 1e-9.
@@ -351,6 +369,8 @@ int main(void) {
       {"the same results give the same bytes", test_same_bytes, 0, 0, 0},
       {"curves.csv has a line per checkpoint and quantity", test_curves, 0, 0, 0},
       {"a curve may begin before any light", test_curve_that_begins_dark, 0, 0, 0},
+      {"an interval holds what was measured or is not stated", test_interval_of_a_lucky_photon, 0,
+       0, 0},
       {"the predicted curves are those of theory 3.2", test_predicted_curves, 0, 0, 0},
       {"the table has a line per row, no colour in a file, at most 110 columns", test_table, 0, 0,
        0},
