@@ -46,5 +46,6 @@ void die(const char *format, ...) {
   vfprintf(stderr, format, args);
   fputc('\n', stderr);
   va_end(args);
-  exit(1);
+  fflush(stdout);
+  _Exit(1); // not exit: two threads may die of the same full disk, and exit is for one
 }

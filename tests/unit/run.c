@@ -42,6 +42,11 @@ static int remove_entry(const char *path, const struct stat *info, int type, str
   return remove(path);
 }
 
+static void remove_references(void) {
+  const char *path = path_in("references");
+  if (file_exists(path)) nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+}
+
 // An experiment file NAME.yaml with this text, read.
 static struct experiment experiment_of(const char *name, const char *yaml) {
   const char *path = path_in(arena_format(&arena, "%s.yaml", name));
@@ -79,6 +84,7 @@ static struct results run(const char *name, const char *yaml) {
   "scene: scenes/plane-quadratic-beam.pbrt\nradius: 0.5\nphotons: 250\ndepth: 1\n"                 \
   "probes: [[32, 32]]\niterations: 4\nruns: 3\n"
 #define BOX "scene: scenes/cornell-box.pbrt\nradius: 0.3\nphotons: 300\niterations: 2\nruns: 2\n"
+#define TRACED BEAM "reference: {integrator: path, se: 0.05}\n"
 
 // ---- what is measured ----
 
@@ -288,6 +294,23 @@ static void blocks_that_a_killed_program_could_not_remove_go_with_the_next_call(
   assert_false(file_exists(path_in("killed/blocks")));
 }
 
+static void threads_share_blocks_and_references_without_a_trace(void **state) {
+  (void)state;
+  const char *yaml = TRACED "parts: [{runs: 40}, {alpha: 0.5, runs: 20}]\n";
+  struct experiment experiment = experiment_of("threads", yaml);
+  struct run_options two = {.threads = 2, .quiet = true};
+  struct problem problem = {0};
+  remove_references();
+  run_into(&experiment, path_in("one-thread"));
+  remove_references();
+  assert_int_equal(run_experiment(&experiment, path_in("two-threads"), two, &arena, &problem),
+                   RUN_DONE);
+  assert_string_equal(read_text(path_in("one-thread/log.csv")),
+                      read_text(path_in("two-threads/log.csv")));
+  assert_string_equal(read_text(path_in("one-thread/probes.csv")),
+                      read_text(path_in("two-threads/probes.csv")));
+}
+
 static void another_experiment_leaves_unfinished_blocks_alone(void **state) {
   (void)state;
   struct experiment first = experiment_of("first", BEAM "parts: [{runs: 20}]\n");
@@ -323,8 +346,6 @@ static void a_slash_behind_the_directory_changes_nothing(void **state) {
 
 // ---- references ----
 
-#define TRACED BEAM "reference: {integrator: path, se: 0.05}\n"
-
 // The only file in the cache of references.
 static const char *cached_reference(void) {
   DIR *list = opendir(path_in("references"));
@@ -337,11 +358,6 @@ static const char *cached_reference(void) {
   }
   closedir(list);
   return found;
-}
-
-static void remove_references(void) {
-  const char *path = path_in("references");
-  if (file_exists(path)) nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
 }
 
 static void a_reference_cut_anywhere_is_made_again(void **state) {
@@ -476,6 +492,7 @@ int main(void) {
       cmocka_unit_test(a_block_with_any_byte_changed_or_cut_is_none),
       cmocka_unit_test(a_run_goes_on_where_it_stopped_and_keeps_the_times),
       cmocka_unit_test(blocks_that_a_killed_program_could_not_remove_go_with_the_next_call),
+      cmocka_unit_test(threads_share_blocks_and_references_without_a_trace),
       cmocka_unit_test(another_experiment_leaves_unfinished_blocks_alone),
       cmocka_unit_test(results_that_lost_a_file_are_not_up_to_date),
       cmocka_unit_test(a_slash_behind_the_directory_changes_nothing),
