@@ -93,6 +93,10 @@ static struct pixel *probe_grid(const struct camera *camera, struct arena *arena
 static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct problem *problem) {
   const struct camera *camera = &plan->loaded->scene.camera;
   const struct cell *cell = plan->cell;
+  if (!cell->n_probes && (camera->width < 3 || camera->height < 3))
+    return problem_set(problem,
+                       "%s: a film of %d x %d pixels has no nine default probes, say `probes`",
+                       cell->scene_path, camera->width, camera->height);
   plan->n_probes = cell->n_probes ? cell->n_probes : 9;
   plan->probe_pixel = cell->n_probes ? cell->probe : probe_grid(camera, arena);
   for (int p = 0; p < plan->n_probes; p++) {

@@ -86,6 +86,17 @@ static struct results run(const char *name, const char *yaml) {
 #define BOX "scene: scenes/cornell-box.pbrt\nradius: 0.3\nphotons: 300\niterations: 2\nruns: 2\n"
 #define TRACED BEAM "reference: {integrator: path, se: 0.05}\n"
 
+// A disk seen from above and the field of view around it, in degrees.
+static void write_disk(const char *name, int width, int height, int fov, int radius) {
+  write_text(path_in(name),
+             arena_format(&arena,
+                          "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"
+                          "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" %d\n"
+                          "WorldBegin\nLightSource \"point\" \"point3 from\" [0 0 2]\n"
+                          "Material \"diffuse\"\nShape \"disk\" \"float radius\" %d\n",
+                          width, height, fov, radius));
+}
+
 // ---- what is measured ----
 
 static void cells_that_the_integrator_cannot_tell_apart_get_the_same_values(void **state) {
@@ -393,11 +404,7 @@ static void references_of_thousands_of_probes_are_references(void **state) {
     for (int x = 0; x < 65; x++) row = arena_format(&arena, "%s[%d,%d],", row, x + 1, y + 1);
     probes = arena_format(&arena, "%s%s\n ", probes, row);
   }
-  write_text(path_in("large.pbrt"),
-             "Film \"rgb\" \"integer xresolution\" 67 \"integer yresolution\" 67\n"
-             "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"
-             "LightSource \"point\" \"point3 from\" [0 0 2]\nMaterial \"diffuse\"\n"
-             "Shape \"disk\" \"float radius\" 3\n");
+  write_disk("large.pbrt", 67, 67, 20, 3);
   struct results results =
       run("thousands", arena_format(&arena,
                                     "scene: %s\nradius: 0.3\nphotons: 9\niterations: 1\nruns: 1\n"
@@ -429,13 +436,20 @@ static void refuses(const char *name, const char *yaml, const char *says) {
   assert_false(file_exists(directory));
 }
 
+static void a_film_too_small_for_the_default_probes_is_refused(void **state) {
+  (void)state;
+  write_disk("small.pbrt", 2, 64, 90, 1);
+  write_disk("least.pbrt", 3, 3, 20, 3);
+  const char *yaml = "scene: %s\nradius: 0.3\nphotons: 9\niterations: 1\nruns: 1\n";
+  refuses("small", arena_format(&arena, yaml, path_in("small.pbrt")), "no nine default probes");
+  struct results results = run("least", arena_format(&arena, yaml, path_in("least.pbrt")));
+  for (int p = 0; p < 9; p++)
+    assert_true(results.probe[0][p].x == p % 3 && results.probe[0][p].y == p / 3);
+}
+
 static void a_probe_that_sees_nothing_is_refused_before_anything_is_made(void **state) {
   (void)state;
-  write_text(path_in("disk.pbrt"),
-             "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64\n"
-             "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\n"
-             "LightSource \"point\" \"point3 from\" [0 0 2]\nMaterial \"diffuse\"\n"
-             "Shape \"disk\" \"float radius\" 1\n");
+  write_disk("disk.pbrt", 64, 64, 90, 1);
   char *yaml = arena_format(&arena, "scene: %s\nradius: 0.3\n", path_in("disk.pbrt"));
   refuses("nothing", yaml, "default probe [10, 10] sees no surface");
   refuses("corner", arena_format(&arena, "%sprobes: [[32, 32], [0, 1]]\n", yaml),
@@ -454,11 +468,7 @@ static void a_name_that_would_break_the_outputs_is_refused(void **state) {
 
 static void a_film_of_more_pixels_than_can_be_numbered_is_refused(void **state) {
   (void)state;
-  write_text(path_in("film.pbrt"),
-             "Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536\n"
-             "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"
-             "LightSource \"point\" \"point3 from\" [0 0 2]\nMaterial \"diffuse\"\n"
-             "Shape \"disk\" \"float radius\" 1\n");
+  write_disk("film.pbrt", 65536, 65536, 20, 1);
   char *yaml = arena_format(&arena, "scene: %s\nradius: 0.3\nprobes: [[32768, 32768]]\nimages: 1\n",
                             path_in("film.pbrt"));
   refuses("film", yaml, "film of 65536 x 65536 pixels is too large");
@@ -500,6 +510,7 @@ int main(void) {
       cmocka_unit_test(a_cached_reference_is_used),
       cmocka_unit_test(references_of_thousands_of_probes_are_references),
       cmocka_unit_test(averages_are_logged_ten_times_a_decade_and_at_the_end),
+      cmocka_unit_test(a_film_too_small_for_the_default_probes_is_refused),
       cmocka_unit_test(a_probe_that_sees_nothing_is_refused_before_anything_is_made),
       cmocka_unit_test(a_name_that_would_break_the_outputs_is_refused),
       cmocka_unit_test(a_film_of_more_pixels_than_can_be_numbered_is_refused),
