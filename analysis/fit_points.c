@@ -68,8 +68,9 @@ void fit_bias_points(const struct series *series, const struct prediction *theor
     struct fit_point *point = new_point(fit, row, last);
     double se = sqrt(sums.variance / (n * n) / runs + theory->truth_se * theory->truth_se);
     point->measured = series->average[c].mean - theory->truth;
-    point->lower = point->measured - 1.959963984540054 * se;
-    point->upper = point->measured + 1.959963984540054 * se;
+    double half = special_t_quantile(0.025, v->dof) * se;
+    point->lower = point->measured - half;
+    point->upper = point->measured + half;
     point->predicted = sums.bias / n;
   }
 }

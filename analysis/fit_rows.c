@@ -74,7 +74,7 @@ static void variance_row(const struct variance_fit *v, const struct prediction *
   if (has_constants(theory)) row->coefficient_theory = theory->variance_coefficient;
   add_silence(row, v->silence);
   if (v->why) return;
-  double half = 1.959963984540054 * v->rate_se;
+  double half = special_normal_quantile(0.025) * v->rate_se;
   set_rate(row, v->rate, v->rate_se, v->rate - half, v->rate + half);
   set_coefficient(row, theory->variance_coefficient, v->coefficient, v->coefficient_se);
   if (row->resolved) add_deviate(row, "rate", (v->rate - row->rate_theory) / v->rate_se);

@@ -283,6 +283,19 @@ static void test_interval_of_a_lucky_photon(void **state) {
   assert_true(found > 0);
 }
 
+// With two runs of one iteration the variance has one degree of freedom, nearly: the interval is
+// Cauchy's, 12.7 standard errors to either side, and not 1.96.
+static void test_interval_of_two_values(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.gaussian = true, s.iterations = 1, s.runs = 2, s.photons_1 = 1e4;
+  struct fit fit = synthetic_fit(&s, 1, &arena);
+  const struct fit_point *point = &fit.point[fit.n_points - 1];
+  assert_int_equal(point->row->quantity, QUANTITY_BIAS);
+  double se = sqrt(fit.point[0].measured / 2), half = (point->upper - point->lower) / 2;
+  assert_true(fabs(half / se - 12.706) < 0.01);
+}
+
 // The predicted curves are theory 3.2's: (A S- + C N) / N^2 and b_1 S+ / N, for the quadratic
 // profile. C = (R_2 Laplacian / 4 q - mu^2) / N_e; with r_1 = 1 and E = 1 - d^2 / 2 the box has
 // A = 1 / lambda_1, b_1 = -1/4 and the middle term -A / 4; mu^2 / N_e is 1e-9.
@@ -371,6 +384,7 @@ int main(void) {
       {"a curve may begin before any light", test_curve_that_begins_dark, 0, 0, 0},
       {"an interval holds what was measured or is not stated", test_interval_of_a_lucky_photon, 0,
        0, 0},
+      {"two values have Cauchy's interval", test_interval_of_two_values, 0, 0, 0},
       {"the predicted curves are those of theory 3.2", test_predicted_curves, 0, 0, 0},
       {"the table has a line per row, no colour in a file, at most 110 columns", test_table, 0, 0,
        0},
