@@ -46,7 +46,7 @@ struct integrator_type {
   bool photons;     // uses kernel, law, radius and photons
   bool independent; // iterations are independent of each other: any order, any split
   // State for one thread. The measurement must outlive it.
-  void *(*new)(const struct measurement *, struct arena *);
+  void *(*create)(const struct measurement *, struct arena *);
   void (*begin)(void *state, uint64_t run); // run k = 1, 2, ...
   // frame[(estimator * n_points + point) * n_channels + channel]: radiance (W sr^-1 m^-2) this
   // iteration alone estimates.

@@ -111,7 +111,7 @@ const struct integrator_type integrator_path = {
     .source = "Kajiya 1986; Veach and Guibas 1995",
     .photons = false,
     .independent = true,
-    .new = path_new,
+    .create = path_new,
     .begin = path_begin,
     .step = path_step,
 };

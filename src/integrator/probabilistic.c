@@ -148,7 +148,7 @@ const struct integrator_type integrator_probabilistic = {
     .source = "Knaus and Zwicker 2011",
     .photons = true,
     .independent = true,
-    .new = probabilistic_new,
+    .create = probabilistic_new,
     .begin = probabilistic_begin,
     .step = probabilistic_step,
 };

@@ -73,7 +73,7 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                          arena_new(&scratch, double, plan->images ? frame_size : 0),
                          plan->images ? frame_size : 0};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
-  void *state = plan->cell->integrator->new (measure, &scratch);
+  void *state = plan->cell->integrator->create(measure, &scratch);
   uint64_t first = block * RUNS_PER_BLOCK + 1, last = first + RUNS_PER_BLOCK - 1;
   last = last < plan->cell->runs ? last : plan->cell->runs;
   for (uint64_t run = first; run <= last; run++) {

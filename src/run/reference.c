@@ -1,18 +1,18 @@
 #include "run/reference.h"
 
-#include "base/file.h"
 #include "numeric/rng.h"
 #include "numeric/sum.h"
 #include "run/interrupt.h"
 #include "run/progress.h"
+#include "run/reference_cache.h"
 
 #include <string.h>
-#include <xxhash.h>
 
 enum {
   SAMPLES_PER_STEP = 4096, // shared by the probes: one full batch of walks
-  STEPS_PER_UNIT = 64,     // what a thread takes at a time
-  FIRST_UNITS = 4,         // then the number of units doubles until the error is small enough
+  STEPS_PER_UNIT = 16,     // what a thread takes at a time
+  UNITS_PER_BLOCK = 16,    // after each block the error is looked at and the state kept
+  STEPS_PER_BLOCK = STEPS_PER_UNIT * UNITS_PER_BLOCK, // a power of two, see moments_tree
 };
 
 struct reference {
@@ -21,7 +21,7 @@ struct reference {
   const struct integrator_type *integrator;
   struct measurement measure;
   int replicas;
-  struct moments_tree tree; // over steps, in their order
+  struct moments_tree tree; // over blocks, in their order
 };
 
 static struct reference reference_of(const struct group_plan *plan, const struct cell *cell,
@@ -38,7 +38,6 @@ static struct reference reference_of(const struct group_plan *plan, const struct
   reference.measure.n_replicas = reference.replicas;
   reference.measure.n_estimators = 1;
   reference.measure.seed = rng_hash_name("reference");
-  reference.tree = moments_tree_new(plan->n_probes, arena);
   return reference;
 }
 
@@ -46,9 +45,9 @@ static struct reference reference_of(const struct group_plan *plan, const struct
 static void compute_unit(const struct reference *reference, uint64_t unit, double *mean,
                          struct arena scratch) {
   int n_channels = reference->measure.features.n_channels, n_probes = reference->plan->n_probes;
-  double *frame = arena_new(&scratch, double, (long)reference->measure.n_points *n_channels);
+  double *frame = arena_new(&scratch, double, n_channels *(long)reference->measure.n_points);
   double *value = arena_new(&scratch, double, reference->replicas);
-  void *state = reference->integrator->new (&reference->measure, &scratch);
+  void *state = reference->integrator->create(&reference->measure, &scratch);
   reference->integrator->begin(state, 1);
   for (uint64_t step = 0; step < STEPS_PER_UNIT; step++) {
     reference->integrator->step(state, unit * STEPS_PER_UNIT + step + 1, frame);
@@ -62,25 +61,26 @@ static void compute_unit(const struct reference *reference, uint64_t unit, doubl
   }
 }
 
-// Units first .. last - 1 in parallel, pushed in their order.
-static void compute_round(struct reference *reference, uint64_t first, uint64_t last, int threads,
-                          struct arena *arena) {
+// Moments over the steps of a block.
+static void compute_block(const struct reference *reference, uint64_t block, int threads,
+                          struct moments *root, struct arena scratch) {
   int n_probes = reference->plan->n_probes;
   long size = (long)STEPS_PER_UNIT * n_probes;
-  struct arena scratch = *arena;
-  double *mean = arena_new(&scratch, double, (long)(last - first) * size);
+  double *mean = arena_new(&scratch, double, UNITS_PER_BLOCK *size);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (uint64_t unit = first; unit < last; unit++) {
+  for (uint64_t unit = 0; unit < UNITS_PER_BLOCK; unit++) {
     struct arena own = arena_reserve();
-    if (!interrupt_signal()) compute_unit(reference, unit, mean + (long)(unit - first) * size, own);
+    if (!interrupt_signal())
+      compute_unit(reference, block * UNITS_PER_BLOCK + unit, mean + (long)unit * size, own);
     arena_release(own);
   }
+  struct moments_tree tree = moments_tree_new(n_probes, &scratch);
   struct moments *leaf = arena_new(&scratch, struct moments, n_probes);
-  for (long step = 0; step < (long)(last - first) * STEPS_PER_UNIT; step++) {
+  for (long step = 0; step < STEPS_PER_BLOCK; step++) {
     for (int p = 0; p < n_probes; p++) leaf[p] = moments_of(mean[step * n_probes + p]);
-    moments_tree_push(&reference->tree, leaf, &scratch);
+    moments_tree_push(&tree, leaf, &scratch);
   }
-  *arena = scratch; // the tree may have grown into it
+  moments_tree_root(&tree, root);
 }
 
 static double largest_se(const struct reference *reference, struct moments *root) {
@@ -93,84 +93,49 @@ static double largest_se(const struct reference *reference, struct moments *root
   return largest;
 }
 
-// ---- cache ----
-
-static char *cache_path(const struct group_plan *plan, const struct cell *cell,
-                        const char *directory, struct arena *arena) {
-  char *key =
-      arena_format(arena, "2 %016llx %s %d %d %.17g", (unsigned long long)plan->loaded->scene.hash,
-                   cell->reference_integrator, cell->depth, cell->footprint, cell->reference_se);
-  for (int p = 0; p < plan->n_probes; p++)
-    key = arena_format(arena, "%s %d,%d", key, plan->probe_pixel[p].x, plan->probe_pixel[p].y);
-  return arena_format(arena, "%s/%s-%016llx.csv", directory, cell->scene,
-                      (unsigned long long)XXH64(key, strlen(key), 0));
+// Work grows as the inverse square of the error.
+static double share_done(double target, double se) {
+  double share = se > 0 ? target * target / (se * se) : 1;
+  return share < 1 ? share : 1;
 }
 
-static const char cache_header[] = "x,y,reference,reference_se,samples\n";
-
-// Only a file that is whole: these probes, row by row to the end of the last line.
-static bool cache_read(const char *path, const struct group_plan *plan, struct probe *probe,
-                       struct arena scratch) {
-  struct text text;
-  struct problem ignored = {0};
-  struct probe *read = arena_new(&scratch, struct probe, plan->n_probes);
-  if (!file_exists(path) || !file_read(path, &scratch, &text, &ignored)) return false;
-  if (strncmp(text.data, cache_header, strlen(cache_header)) != 0) return false;
-  const char *at = text.data + strlen(cache_header);
-  for (int p = 0; p < plan->n_probes; p++) {
-    int used = 0, x, y;
-    read[p] = probe[p];
-    if (sscanf(at, "%d,%d,%lf,%lf,%*f%n", &x, &y, &read[p].reference, &read[p].reference_se,
-               &used) != 4 ||
-        used == 0 || at[used] != '\n' || x != probe[p].x || y != probe[p].y)
-      return false;
-    at += used + 1;
-  }
-  memcpy(probe, read, (size_t)plan->n_probes * sizeof *probe);
-  return true;
-}
-
-static bool cache_write(struct file_out *out, const struct group_plan *plan,
-                        const struct probe *probe, double samples, struct problem *problem) {
-  fputs(cache_header, out->stream);
-  for (int p = 0; p < plan->n_probes; p++)
-    fprintf(out->stream, "%d,%d,%.17g,%.17g,%.17g\n", probe[p].x, probe[p].y, probe[p].reference,
-            probe[p].reference_se, samples);
-  return file_commit(out, problem);
-}
-
-// Doubles the number of samples until every probe's error is small enough. False: interrupted.
-static bool refine(struct reference *reference, const struct run_options *options,
+// Block after block until every probe's error is small enough. False: interrupted.
+static bool refine(struct reference *reference, const char *path, const struct run_options *options,
                    struct moments *root, struct arena *arena) {
   double target = reference->target_se;
-  int threads = plan_threads(options);
-  struct progress progress = progress_begin("reference", 1, 0, options->quiet);
-  for (uint64_t done = 0, next = FIRST_UNITS;; done = next, next *= 2) {
-    compute_round(reference, done, next, threads, arena);
+  struct moments *block = arena_new(arena, struct moments, reference->plan->n_probes);
+  double se = reference->tree.count ? largest_se(reference, root) : INFINITY;
+  struct progress progress = progress_begin("reference", 1, share_done(target, se), options->quiet);
+  while (se > target) {
+    compute_block(reference, reference->tree.count, plan_threads(options), block, *arena);
     if (interrupt_signal()) break;
-    double se = largest_se(reference, root);
-    // Work grows as the inverse square of the error.
-    double share = se > 0 ? target * target / (se * se) : 1;
-    progress_advance(&progress, (share < 1 ? share : 1) - progress.done);
-    if (se <= target) break;
+    moments_tree_push(&reference->tree, block, arena);
+    reference_keep(path, &reference->tree, *arena);
+    se = largest_se(reference, root);
+    progress_advance(&progress, share_done(target, se) - progress.done);
   }
   progress_end(&progress);
   return !interrupt_signal();
 }
 
+static bool is_sampled(const struct cell *cell) {
+  return strcmp(cell->reference_integrator, "none") != 0 &&
+         strcmp(cell->reference_integrator, "analytic") != 0;
+}
+
 bool reference_make(const struct group_plan *plan, const struct cell *cell,
                     const struct run_options *options, const char *directory, struct probe *probe,
                     struct arena scratch, struct problem *problem) {
-  const char *name = cell->reference_integrator;
-  if (strcmp(name, "none") == 0 || strcmp(name, "analytic") == 0) return true;
-  char *path = cache_path(plan, cell, directory, &scratch);
-  if (cache_read(path, plan, probe, scratch)) return true;
-  struct file_out
-      out; // begun first: a folder that cannot be written to is found out before the work
+  if (!is_sampled(cell)) return true;
+  char *path = reference_path(plan, cell, directory, &scratch);
+  if (reference_read(path, plan, probe, scratch)) return true;
+  // Begun first: a folder that cannot be written to is found out before the work.
+  struct file_out out;
   if (!file_make_directory(directory, problem) || !file_begin(&out, path, problem)) return false;
   struct reference reference = reference_of(plan, cell, &scratch);
+  reference.tree = reference_take_up(path, plan->n_probes, &scratch);
   struct moments *root = arena_new(&scratch, struct moments, plan->n_probes);
-  if (!refine(&reference, options, root, &scratch)) {
+  if (!refine(&reference, path, options, root, &scratch)) {
     file_abandon(&out);
     return false;
   }
@@ -178,5 +143,31 @@ bool reference_make(const struct group_plan *plan, const struct cell *cell,
     probe[p].reference = root[p].mean;
     probe[p].reference_se = sqrt(moments_se2(root[p]));
   }
-  return cache_write(&out, plan, probe, root[0].n * reference.replicas, problem);
+  if (!reference_write(&out, plan, probe, root[0].n * reference.replicas, problem)) return false;
+  reference_forget(path, scratch);
+  return true;
+}
+
+double reference_left_s(const struct group_plan *plan, const struct cell *cell,
+                        const char *directory, struct arena scratch) {
+  struct probe *probe = arena_new(&scratch, struct probe, plan->n_probes);
+  if (!is_sampled(cell)) return 0;
+  char *path = reference_path(plan, cell, directory, &scratch);
+  if (reference_read(path, plan, probe, scratch)) return 0;
+  struct reference reference = reference_of(plan, cell, &scratch);
+  struct moments_tree kept = reference_take_up(path, plan->n_probes, &scratch);
+  double *mean = arena_new(&scratch, double, (long)STEPS_PER_UNIT * plan->n_probes);
+  double started = progress_clock_s();
+  compute_unit(&reference, 0, mean, scratch);
+  double unit_s = progress_clock_s() - started, most = 0;
+  for (int p = 0; p < plan->n_probes; p++) {
+    struct moments m = {0};
+    for (int step = 0; step < STEPS_PER_UNIT; step++)
+      m = moments_merge(m, moments_of(mean[step * plan->n_probes + p]));
+    double variance = moments_variance(m);
+    most = most < variance ? variance : most;
+  }
+  double target = reference.target_se, blocks = most / (target * target) / STEPS_PER_BLOCK;
+  double left = ceil(blocks) - (double)kept.count;
+  return unit_s * UNITS_PER_BLOCK * (left > 1 ? left : 1);
 }

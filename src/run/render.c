@@ -42,7 +42,7 @@ bool render_image(const struct integrator_type *integrator, const struct measure
                *kept = arena_new(arena, struct arena, threads);
   for (int t = 0; t < threads; t++) {
     own[t] = kept[t] = arena_reserve();
-    state[t] = integrator->new (measure, &own[t]);
+    state[t] = integrator->create(measure, &own[t]);
     integrator->begin(state[t], 1);
   }
   interrupt_install();

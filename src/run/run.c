@@ -39,7 +39,7 @@ static double measure_run_s(const struct group_plan *plan, struct arena scratch)
   double *frame =
       arena_new(&scratch, double,
                 (long)measure->n_estimators * measure->n_points * measure->features.n_channels);
-  void *state = integrator->new (measure, &scratch);
+  void *state = integrator->create(measure, &scratch);
   integrator->begin(state, 1);
   integrator->step(state, 1, frame); // warms up
   double started = progress_clock_s(), elapsed = 0;
@@ -118,10 +118,25 @@ static void compute_all(const struct plan *plan, const char *folder, const struc
   }
 }
 
+static char *references_of(const char *directory, struct arena *arena) {
+  return arena_format(arena, "%s/../references", directory);
+}
+
+// Of all groups, by the first cell of each: cells that share paths rarely differ in their
+// reference.
+static double references_left_s(const struct plan *plan, const char *directory,
+                                struct arena scratch) {
+  double left_s = 0;
+  for (int g = 0; g < plan->n_groups && !interrupt_signal(); g++)
+    left_s += reference_left_s(&plan->group[g], plan->group[g].cell,
+                               references_of(directory, &scratch), scratch);
+  return left_s;
+}
+
 // Probes of all cells, with references. False without a problem: interrupted.
 static bool probes_make(const struct plan *plan, const char *directory, struct probe **probe,
                         struct arena *arena, struct problem *problem) {
-  char *references = arena_format(arena, "%s/../references", directory);
+  char *references = references_of(directory, arena);
   for (int g = 0; g < plan->n_groups; g++) {
     const struct group_plan *group = &plan->group[g];
     for (int e = 0; e < group->group->n_cells; e++) {
@@ -151,17 +166,23 @@ static const char *without_slashes(const char *path, struct arena *arena) {
   return arena_string(arena, path, length);
 }
 
-// All blocks that are missing. False: interrupted.
-static bool make_blocks(const struct plan *plan, const char *folder, struct arena *arena) {
-  const char *name = plan->experiment->name;
-  struct units units = units_left(plan, folder, arena);
+// Says what is ahead.
+static void announce(const struct plan *plan, const struct units *units, const char *directory,
+                     struct arena scratch) {
+  if (plan->options.quiet) return;
   int threads = plan_threads(&plan->options);
-  if (!plan->options.quiet)
-    fprintf(stderr, "%s: about %.0f s of computation, %.0f s on %d threads\n", name, units.left_s,
-            units.left_s / threads, threads);
-  struct progress progress =
-      progress_begin(name, units.total_s, units.total_s - units.left_s, plan->options.quiet);
-  compute_all(plan, folder, &units, &progress);
+  double references_s = references_left_s(plan, directory, scratch);
+  double total_s = units->left_s + references_s;
+  fprintf(stderr,
+          "%s: about %.0f s of computation (%.0f s of it references), %.0f s on %d threads\n",
+          plan->experiment->name, total_s, references_s, total_s / threads, threads);
+}
+
+// The blocks that are missing. False: interrupted.
+static bool make_blocks(const struct plan *plan, const struct units *units, const char *folder) {
+  struct progress progress = progress_begin(plan->experiment->name, units->total_s,
+                                            units->total_s - units->left_s, plan->options.quiet);
+  compute_all(plan, folder, units, &progress);
   progress_end(&progress);
   return !interrupt_signal();
 }
@@ -182,10 +203,12 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
   if (!output_set_aside(&plan, directory, *arena, problem) || !file_make_directory(folder, problem))
     return RUN_FAILED;
   interrupt_install();
+  struct units units = units_left(&plan, folder, arena);
+  announce(&plan, &units, directory, *arena);
   struct probe **probe = arena_new(arena, struct probe *, experiment->n_cells);
   if (!probes_make(&plan, directory, probe, arena, problem))
     return problem->text[0] ? RUN_FAILED : interrupted(directory);
-  if (!make_blocks(&plan, folder, arena)) return interrupted(directory);
+  if (!make_blocks(&plan, &units, folder)) return interrupted(directory);
   struct outputs outputs = {&plan, probe, directory};
   return output_write(&outputs, *arena, problem) ? RUN_DONE : RUN_FAILED;
 }

@@ -50,7 +50,7 @@ static struct moments *moments_over(const char *name, const struct measurement *
   long size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
   double *frame = arena_new(&arena, double, size);
   struct moments *out = arena_new(&arena, struct moments, size);
-  void *state = integrator->new (measure, &arena);
+  void *state = integrator->create(measure, &arena);
   integrator->begin(state, 1);
   for (uint64_t i = first; i < first + count; i++) {
     integrator->step(state, i, frame);
@@ -151,7 +151,7 @@ static void photons_extrapolated_to_radius_zero_agree_with_path_tracing(void **s
     photons.nee = nee;
     struct moments m0[N] = {{0}};
     const struct integrator_type *integrator = integrator_find("probabilistic");
-    void *run = integrator->new (&photons, &arena);
+    void *run = integrator->create(&photons, &arena);
     integrator->begin(run, 2);
     for (uint64_t i = 1; i <= 150; i++) {
       double frame[3][N];
