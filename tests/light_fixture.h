@@ -21,7 +21,7 @@ static const double pi = 0x1.921fb54442d18p+1;
 // Reads `world` after a camera; false: problem set.
 static inline bool light_scene_try(const char *world, struct arena *arena, struct scene *scene,
                                    struct problem *problem) {
-  char path[] = "/tmp/photonlab-light-XXXXXX";
+  char path[] = P_tmpdir "/photonlab-light-XXXXXX";
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   FILE *file = fdopen(fd, "w");

@@ -47,7 +47,7 @@ struct integrator_type {
   bool independent; // iterations are independent of each other: any order, any split
   // State for one thread. The measurement must outlive it.
   void *(*create)(const struct measurement *, struct arena *);
-  void (*begin)(void *state, uint64_t run); // run k = 1, 2, ...
+  void (*begin)(void *state, uint64_t run); // k = 1, 2, ...; references take 0
   // frame[(estimator * n_points + point) * n_channels + channel]: radiance (W sr^-1 m^-2) this
   // iteration alone estimates.
   void (*step)(void *state, uint64_t i, double *frame);

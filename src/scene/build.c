@@ -171,7 +171,11 @@ static bool choose_lights(struct reader *reader) {
     scene->light[k].probability = mean_power(&scene->light[k]) / total;
     scene->light_cdf[k + 1] = scene->light_cdf[k] + scene->light[k].probability;
   }
-  scene->light_cdf[scene->n_lights] = 1; // what rounding left over
+  // What rounding left over belongs to the last light that emits: a dark one is never chosen.
+  for (uint32_t k = scene->n_lights; k > 0; k--) {
+    scene->light_cdf[k] = 1;
+    if (scene->light[k - 1].probability > 0) break;
+  }
   return true;
 }
 

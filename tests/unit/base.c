@@ -43,7 +43,7 @@ static void the_first_problem_is_kept(void **state) {
 
 static void a_file_is_read_whole_whatever_its_size(void **state) {
   (void)state;
-  char folder[] = "/tmp/photonlab-base-XXXXXX", path[64];
+  char folder[] = P_tmpdir "/photonlab-base-XXXXXX", path[64];
   static char bytes[200000];
   struct arena arena = arena_reserve();
   assert_non_null(mkdtemp(folder));
@@ -70,7 +70,7 @@ static void a_file_is_read_whole_whatever_its_size(void **state) {
 // The limit of a file's size stands for a full disk.
 static void a_file_that_cannot_be_written_whole_says_why_and_leaves_nothing(void **state) {
   (void)state;
-  char folder[] = "/tmp/photonlab-base-XXXXXX", path[64];
+  char folder[] = P_tmpdir "/photonlab-base-XXXXXX", path[64];
   struct rlimit before, small = {1000, 1000};
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/file", folder);

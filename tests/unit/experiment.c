@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 static struct arena arena;
-static char folder[] = "/tmp/photonlab-experiment-XXXXXX";
+static char folder[] = P_tmpdir "/photonlab-experiment-XXXXXX";
 static const char *mine; // a file in it
 
 #define SCENE "tests/data/experiments/scene.pbrt"

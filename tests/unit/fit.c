@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 static struct arena arena;
-static char folder[] = "/tmp/photonlab-fit-XXXXXX";
+static char folder[] = P_tmpdir "/photonlab-fit-XXXXXX";
 
 static const struct synthetic base = {.name = "fit: written",
                                       .alpha = 2.0 / 3,

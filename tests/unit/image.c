@@ -362,7 +362,7 @@ int main(void) {
   arena = arena_reserve();
   // In memory where there is such a place: every image is fsynced.
   snprintf(folder, sizeof folder, "%s/photonlab-image-XXXXXX",
-           file_exists("/dev/shm") ? "/dev/shm" : "/tmp");
+           file_exists("/dev/shm") ? "/dev/shm" : P_tmpdir);
   if (!mkdtemp(folder)) die("cannot make %s", folder);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(exr_keeps_every_bit_of_every_channel),

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 static struct arena arena;
-static char folder[] = "/tmp/photonlab-exr-XXXXXX";
+static char folder[] = P_tmpdir "/photonlab-exr-XXXXXX";
 static const char *path;
 
 enum { WIDTH = 3, HEIGHT = 21 };

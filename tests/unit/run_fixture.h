@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 static struct arena arena;
-static char folder[] = "/tmp/photonlab-run-XXXXXX"; // of all files of these tests
+static char folder[] = P_tmpdir "/photonlab-run-XXXXXX"; // of all files of these tests
 
 static inline const char *path_in(const char *name) {
   return arena_format(&arena, "%s/%s", folder, name);

@@ -201,6 +201,17 @@ static void lights_are_chosen_in_proportion_to_their_mean_power(void **state) {
   assert_true(scene.light[1].probability == 0);
 }
 
+// The probabilities of these three, added up one by one, fall short of 1 by 2^-53; the dark light
+// behind them must not get it.
+static void a_dark_light_at_the_end_is_never_chosen(void **state) {
+  (void)state;
+  struct scene scene = scene_of("WorldBegin LightSource \"point\" \"rgb I\" [.1 .1 .1]\n"
+                                "LightSource \"point\" \"rgb I\" [.4 .4 .4]\n"
+                                "LightSource \"point\" \"rgb I\" [.1 .1 .1]\n"
+                                "LightSource \"point\" \"rgb I\" [0 0 0]\n" TRIANGLE);
+  assert_true(scene.light_cdf[3] == 1 && scene.light_cdf[4] == 1);
+}
+
 static void a_scene_without_light_is_read(void **state) {
   (void)state;
   assert_int_equal(scene_of("WorldBegin " TRIANGLE).n_lights, 0);
@@ -261,6 +272,7 @@ int main(void) {
       cmocka_unit_test(an_unused_coloured_material_leaves_the_scene_gray),
       cmocka_unit_test(normals_point_where_pbrt_says),
       cmocka_unit_test(lights_are_chosen_in_proportion_to_their_mean_power),
+      cmocka_unit_test(a_dark_light_at_the_end_is_never_chosen),
       cmocka_unit_test(a_scene_without_light_is_read),
       cmocka_unit_test(vertices_are_rounded_once_to_the_nearest_float),
       cmocka_unit_test(a_triangle_without_area_is_kept_and_never_hit),
