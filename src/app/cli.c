@@ -169,8 +169,7 @@ const char *cli_setting_of(const struct cli *cli, const char *key) {
 bool cli_apply(const struct cli *cli, struct cell *cell, struct problem *problem) {
   for (int s = 0; s < cli->n_settings; s++) {
     const struct cli_setting *setting = &cli->setting[s];
-    struct node node = {
-        .kind = NODE_SCALAR, .place = {.file = "command line"}, .text = setting->text};
+    struct node node = {.kind = NODE_SCALAR, .place = {.file = cli->source}, .text = setting->text};
     struct reading reading = {cli->arena, problem, setting->option};
     for (int k = 0; k < n_experiment_keys; k++)
       if (strcmp(experiment_keys[k].name, setting->key) == 0 &&
@@ -208,7 +207,7 @@ int cli_main(int argc, char **argv) {
     return 0;
   }
   struct arena arena = arena_reserve();
-  struct cli cli = {.arena = &arena};
+  struct cli cli = {.source = "command line", .arena = &arena};
   struct problem problem = {0};
   int status = read_arguments(command, argc, argv, &cli, &problem);
   if (!status && !problem.text[0]) status = command->run(&cli, &problem);

@@ -17,6 +17,7 @@ struct cli {
     const char *option, *key, *text;
   } setting[CLI_MAX_SETTINGS];
   int n_settings;
+  const char *source;              // where the settings were said, for messages
   struct arena *arena;
 };
 

@@ -45,29 +45,30 @@ static int fit(struct cli *cli, struct problem *problem) {
   return 0;
 }
 
-// The figure's script: in the working directory, or where `make install` puts it.
-static char *figure_script(const char *name, struct arena *arena, struct problem *problem) {
+// A file of paper-figures: in the working directory, or where `make install` puts it; NULL:
+// neither.
+static char *figure_script(const char *name, struct arena *arena) {
   char *here = arena_format(arena, "paper-figures/%s.gp", name);
   if (file_exists(here)) return here;
   char self[4096];
   ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-  if (length > 0) {
-    self[length] = 0;
-    char *slash = strrchr(self, '/');
-    *slash = 0;
-    char *installed = arena_format(arena, "%s/../share/photonlab/%s", self, here);
-    if (file_exists(installed)) return installed;
-  }
-  problem_set(problem, "%s: there is no figure for this experiment", here);
-  return NULL;
+  if (length <= 0) return NULL;
+  self[length] = 0;
+  *strrchr(self, '/') = 0;
+  char *installed = arena_format(arena, "%s/../share/photonlab/%s", self, here);
+  return file_exists(installed) ? installed : NULL;
 }
 
+// The experiment's own figure, else the one that draws whatever there is.
 static int plot(struct cli *cli, struct problem *problem) {
-  struct results results;
-  if (!results_read(cli->argument, cli->arena, &results, problem)) return 1;
-  char *script = figure_script(results.experiment.name, cli->arena, problem);
+  const char *name;
+  if (!results_name(cli->argument, cli->arena, &name, problem)) return 1;
+  char *script = figure_script(name, cli->arena);
+  if (!script) script = figure_script("default", cli->arena);
+  if (!script)
+    return problem_set(problem, "paper-figures: neither %s.gp nor default.gp is there", name), 1;
   char *figures = arena_format(cli->arena, "%s/figures", cli->argument);
-  if (!script || !file_make_directory(figures, problem)) return 1;
+  if (!file_make_directory(figures, problem)) return 1;
   char *const words[] = {"gnuplot", "-c", script, (char *)cli->argument, NULL};
   pid_t child;
   int status;

@@ -64,7 +64,7 @@ static const struct {
 } lists[] = {
     {"integrators", "what one iteration computes", list_integrators},
     {"laws", "radius sequences, rho_i = r_i^d / r_1^d", list_laws},
-    {"kernels", "psi on the unit ball; u = distance / radius", list_kernels},
+    {"kernels", "psi / psi(0) on the unit ball; t = distance / radius", list_kernels},
     {"shapes", "of scene files", list_shapes},
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},
@@ -86,8 +86,11 @@ static int list(struct cli *cli, struct problem *problem) {
   }
   if (found) return 0;
   const char *hint = suggest_name(cli->argument, names, N_LISTS);
-  problem_set(problem, "there is no list '%s'%s%s%s", cli->argument, hint ? "; did you mean '" : "",
-              hint ? hint : "", hint ? "'?" : "");
+  char *known = "";
+  for (int k = 0; k < N_LISTS; k++)
+    known = arena_format(cli->arena, "%s%s%s", known, k ? ", " : "", names[k]);
+  problem_set(problem, "there is no list '%s'%s%s%s (there are: %s)", cli->argument,
+              hint ? "; did you mean '" : "", hint ? hint : "", hint ? "'?" : "", known);
   return EXIT_USAGE;
 }
 

@@ -8,41 +8,47 @@
 #include <stdio.h>
 #include <string.h>
 
-// One thing the scene file may say, in the words of an experiment's key; NULL: it says nothing.
-static bool say(struct cli *scene, const char *key, const char *text) {
-  if (text && scene->n_settings < CLI_MAX_SETTINGS)
-    scene->setting[scene->n_settings++] = (struct cli_setting){key, key, text};
-  return text != NULL;
+// What the scene file says of one key, in the words of an experiment; NULL: nothing. The command
+// line comes before it.
+static void say(struct cli *file, const struct cli *line, const char *key, const char *text) {
+  if (text && !cli_setting_of(line, key) && file->n_settings < CLI_MAX_SETTINGS)
+    file->setting[file->n_settings++] = (struct cli_setting){key, key, text};
 }
 
-static char *number(struct arena *arena, double value, bool said) {
-  return said ? arena_format(arena, "%.17g", value) : NULL;
+static char *number(struct arena *arena, double value) {
+  return isnan(value) ? NULL : arena_format(arena, "%.17g", value);
 }
 
-// The scene file's settings first, then the command line's, through the same readers.
+static const char * or (const char *said, const char *fallback) { return said ? said : fallback; }
+
+// The scene file's settings and the command line's, through the same readers.
 static bool cell_read(const struct cli *cli, const struct scene *scene, struct cell *cell,
                       struct problem *problem) {
   const struct scene_settings *file = &scene->settings;
   struct arena *arena = cli->arena;
-  struct cli said = {.arena = arena};
-  uint64_t iterations = (uint64_t)(file->iterations ? file->iterations : file->spp);
-  say(&said, "integrator", file->integrator ? file->integrator : "path");
-  say(&said, "law", file->law ? file->law : "knaus-zwicker");
-  say(&said, "kernel", file->kernel ? file->kernel : "box");
-  say(&said, "alpha", isnan(file->alpha) ? "2/3" : number(arena, file->alpha, true));
-  say(&said, "radius", number(arena, file->radius, !isnan(file->radius)));
-  say(&said, "photons", arena_format(arena, "%" PRId64, file->photons ? file->photons : 65536));
-  say(&said, "iterations", arena_format(arena, "%" PRIu64, iterations));
-  say(&said, "seed", arena_format(arena, "%" PRId64, file->seed < 0 ? 0 : file->seed));
-  say(&said, "direct", file->direct ? file->direct : "photons");
-  say(&said, "depth", arena_format(arena, "%d", file->max_depth));
-  say(&said, "pixel", file->centre ? "centre" : "footprint");
+  struct cli said = {.source = scene->path, .arena = arena};
+  int64_t photons = file->photons ? file->photons : 65536, seed = file->seed < 0 ? 0 : file->seed;
+  int64_t iterations = file->iterations ? file->iterations : file->spp;
+  say(&said, cli, "integrator", or (file->integrator, "path"));
+  say(&said, cli, "law", or (file->law, "knaus-zwicker"));
+  say(&said, cli, "kernel", or (file->kernel, "box"));
+  say(&said, cli, "alpha", or (number(arena, file->alpha), "2/3"));
+  say(&said, cli, "radius", number(arena, file->radius));
+  say(&said, cli, "photons", arena_format(arena, "%" PRId64, photons));
+  say(&said, cli, "iterations", arena_format(arena, "%" PRId64, iterations));
+  say(&said, cli, "seed", arena_format(arena, "%" PRId64, seed));
+  say(&said, cli, "direct", or (file->direct, "photons"));
+  say(&said, cli, "depth", arena_format(arena, "%d", file->max_depth));
+  say(&said, cli, "pixel", file->centre ? "centre" : "footprint");
   *cell = (struct cell){.radius = NAN};
   return cli_apply(&said, cell, problem) && cli_apply(cli, cell, problem);
 }
 
 static bool measure_film(const struct cell *cell, const struct scene *scene, const struct cli *cli,
                          struct measurement *measure, struct problem *problem) {
+  if (scene->n_lights == 0)
+    return problem_set(problem, "%s: the scene has no light, every pixel would be black",
+                       scene->path);
   if (cell->integrator->photons && isnan(cell->radius))
     return problem_set(problem, "%s: integrator %s needs a radius, say --radius R (scene units)",
                        scene->path, cell->integrator->name);
@@ -91,11 +97,13 @@ static int render(struct cli *cli, struct problem *problem) {
     return 128 + interrupt_signal();
   }
   image.manifest = manifest_of(&cell, &scene, cli->arena);
-  return image_write(output, &image, problem) ? 0 : 1;
+  if (!image_write(output, &image, problem)) return 1;
+  printf("%s\n", output);
+  return 0;
 }
 
 const struct command command_render = {
-    "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png}",
+    "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
     "output integrator spp iterations photons radius alpha kernel law direct maxdepth pixel seed "
     "threads quiet no-skip",
     render};

@@ -6,12 +6,14 @@
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 // A reader over the fields of one line of a CSV file without quotes.
 struct csv {
   const char *path;
   char *at;
   int line;
+  uint64_t sum; // of the whole file, XXH64
   struct problem *problem;
 };
 
@@ -58,12 +60,19 @@ static bool csv_open(struct csv *csv, const char *path, const char *header, stru
                      struct problem *problem) {
   struct text text;
   if (!file_read(path, arena, &text, problem)) return false;
-  *csv = (struct csv){path, text.data, 1, problem};
+  *csv = (struct csv){path, text.data, 1, XXH64(text.data, (size_t)text.length, 0), problem};
   size_t length = strcspn(text.data, "\n");
   if (length != strlen(header) || memcmp(text.data, header, length) != 0)
     return csv_bad(csv, "unexpected columns");
   csv->at += length + (text.data[length] != 0);
   return true;
+}
+
+// When every row made sense.
+static bool csv_close(const struct csv *csv, uint64_t sum) {
+  return csv->sum == sum ||
+         problem_set(csv->problem, "%s: was changed after the run, run the experiment again",
+                     csv->path);
 }
 
 static char *log_header(struct arena *arena) {
@@ -108,8 +117,8 @@ static bool read_probe_row(struct csv *csv, struct arena *arena, struct results 
   return read_probe(csv, field + 2, &results->probe[cell][probe]);
 }
 
-static bool read_probes(const char *path, struct arena *arena, struct results *results,
-                        struct problem *problem) {
+static bool read_probes(const char *path, uint64_t sum, struct arena *arena,
+                        struct results *results, struct problem *problem) {
   struct csv csv;
   if (!csv_open(&csv, path, probes_header, arena, problem)) return false;
   int n_cells = results->experiment.n_cells;
@@ -117,7 +126,7 @@ static bool read_probes(const char *path, struct arena *arena, struct results *r
   results->n_probes = arena_new(arena, int, n_cells);
   while (*csv.at)
     if (!read_probe_row(&csv, arena, results)) return false;
-  return true;
+  return csv_close(&csv, sum);
 }
 
 // ---- log.csv ----
@@ -189,7 +198,7 @@ static bool series_is_complete(const struct series *series) {
   return n > 0 && series->checkpoint[n - 1] == series->n_iterations;
 }
 
-static bool read_log(const char *path, struct arena *arena, struct results *results,
+static bool read_log(const char *path, uint64_t sum, struct arena *arena, struct results *results,
                      struct problem *problem) {
   struct csv csv;
   assert(n_log_columns == LOG_COLUMNS);
@@ -199,7 +208,7 @@ static bool read_log(const char *path, struct arena *arena, struct results *resu
     if (!read_log_row(&csv, results)) return false;
   for (int k = 0; k < results->n_series; k++)
     if (!series_is_complete(&results->series[k])) return csv_bad(&csv, "an iteration is missing");
-  return true;
+  return csv_close(&csv, sum);
 }
 
 // ---- manifest.json ----
@@ -208,6 +217,7 @@ struct manifest {
   const char *name, *quality;
   int n_cells;
   uint64_t *scene_hash, *seed; // by cell; the command line may have set the seed
+  uint64_t log_sum, probes_sum;
 };
 
 static bool read_hex(json_t *object, const char *key, uint64_t *value) {
@@ -222,26 +232,34 @@ static bool take_manifest(json_t *root, struct arena *arena, struct manifest *ma
   json_t *cells = json_object_get(root, "cells");
   if (!quality || !name || !json_is_array(cells)) return false;
   int n = (int)json_array_size(cells);
-  *manifest = (struct manifest){arena_string(arena, name, (ptrdiff_t)strlen(name)),
-                                arena_string(arena, quality, (ptrdiff_t)strlen(quality)), n,
-                                arena_new(arena, uint64_t, n), arena_new(arena, uint64_t, n)};
+  *manifest = (struct manifest){
+      .name = arena_string(arena, name, (ptrdiff_t)strlen(name)),
+      .quality = arena_string(arena, quality, (ptrdiff_t)strlen(quality)),
+      .n_cells = n,
+      .scene_hash = arena_new(arena, uint64_t, n),
+      .seed = arena_new(arena, uint64_t, n),
+  };
   for (int c = 0; c < n; c++) {
     json_t *cell = json_array_get(cells, (size_t)c);
     if (!read_hex(cell, "scene_hash", &manifest->scene_hash[c]) ||
         !read_hex(cell, "seed", &manifest->seed[c]))
       return false;
   }
-  return true;
+  return read_hex(root, "log_hash", &manifest->log_sum) &&
+         read_hex(root, "probes_hash", &manifest->probes_sum);
 }
 
-static bool read_manifest(const char *path, struct arena *arena, struct manifest *manifest,
+static bool read_manifest(const char *directory, struct arena *arena, struct manifest *manifest,
                           struct problem *problem) {
+  char *path = arena_format(arena, "%s/manifest.json", directory);
   json_error_t error;
+  if (!file_exists(path))
+    return problem_set(problem, "%s: no manifest.json, so not finished results of photonlab run",
+                       directory);
   json_t *root = json_load_file(path, 0, &error);
   if (!root) {
     struct place place = {path, error.line, error.column};
-    return problem_at(problem, place, "%s (is this a results directory of photonlab run?)",
-                      error.text);
+    return problem_at(problem, place, "%s", error.text);
   }
   bool ok = take_manifest(root, arena, manifest);
   json_decref(root);
@@ -264,11 +282,20 @@ bool results_read(const char *directory, struct arena *arena, struct results *re
                   struct problem *problem) {
   *results = (struct results){.directory = directory};
   struct manifest manifest = {0};
-  if (!read_manifest(arena_format(arena, "%s/manifest.json", directory), arena, &manifest,
-                     problem) ||
+  if (!read_manifest(directory, arena, &manifest, problem) ||
       !read_experiment(directory, &manifest, arena, &results->experiment, problem))
     return false;
   results->scene_hash = manifest.scene_hash;
-  return read_probes(arena_format(arena, "%s/probes.csv", directory), arena, results, problem) &&
-         read_log(arena_format(arena, "%s/log.csv", directory), arena, results, problem);
+  return read_probes(arena_format(arena, "%s/probes.csv", directory), manifest.probes_sum, arena,
+                     results, problem) &&
+         read_log(arena_format(arena, "%s/log.csv", directory), manifest.log_sum, arena, results,
+                  problem);
+}
+
+bool results_name(const char *directory, struct arena *arena, const char **name,
+                  struct problem *problem) {
+  struct manifest manifest = {0};
+  bool ok = read_manifest(directory, arena, &manifest, problem);
+  *name = manifest.name;
+  return ok;
 }

@@ -43,6 +43,9 @@ struct results {
 
 bool results_read(const char *directory, struct arena *, struct results *, struct problem *);
 
+// Only the experiment's name, from the manifest.
+bool results_name(const char *directory, struct arena *, const char **name, struct problem *);
+
 struct log_column {
   const char *name, *unit, *meaning;
 };

@@ -10,6 +10,7 @@
 #include <inttypes.h>
 #include <jansson.h>
 #include <string.h>
+#include <xxhash.h>
 
 static char *path_of(const char *directory, const char *name, struct arena *arena) {
   return arena_format(arena, "%s/%s", directory, name);
@@ -100,12 +101,11 @@ static bool write_images(const struct outputs *outputs, const struct group_plan 
           picture_of(&group->measure, moments + plan_image(group, e, m), moments_variance, &own);
       image.manifest = arena_format(
           &own,
-          "{\"experiment\": \"%s\", \"cell\": %d, \"scene\": \"%s\", \"integrator\": \"%s\", "
+          "{\"cell\": %d, \"scene\": \"%s\", \"integrator\": \"%s\", "
           "\"kernel\": \"%s\", \"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, "
           "\"photons\": %" PRIu64 ", \"iterations\": %" PRIu64 ", \"runs\": %" PRIu64 "}",
-          outputs->plan->experiment->name, cell->number, cell->scene, cell->integrator->name,
-          cell->kernel->name, cell->law->name, cell->alpha, cell->radius, cell->photons,
-          cell->image[m], cell->runs);
+          cell->number, cell->scene, cell->integrator->name, cell->kernel->name, cell->law->name,
+          cell->alpha, cell->radius, cell->photons, cell->image[m], cell->runs);
       char *path = arena_format(&own, "%s/%s-cell%03d-%" PRIu64 ".exr", folder, cell->scene,
                                 cell->number, cell->image[m]);
       if (!image_write(path, &image, problem)) return false;
@@ -222,6 +222,15 @@ static json_t *manifest_cell(const struct plan *plan, const struct cell *cell) {
   return out;
 }
 
+// Of a file that was just written: what is read back must be it.
+static bool set_hash(json_t *root, const char *key, const char *directory, const char *file,
+                     struct arena scratch, struct problem *problem) {
+  struct text text;
+  if (!file_read(path_of(directory, file, &scratch), &scratch, &text, problem)) return false;
+  json_object_set_new(root, key, hex(XXH64(text.data, (size_t)text.length, 0)));
+  return true;
+}
+
 static bool write_manifest(const struct outputs *outputs, struct arena scratch,
                            struct problem *problem) {
   const struct plan *plan = outputs->plan;
@@ -234,6 +243,12 @@ static bool write_manifest(const struct outputs *outputs, struct arena scratch,
   json_object_set_new(root, "compiler", json_string(photonlab_compiler));
   json_object_set_new(root, "flags", json_string(photonlab_flags));
   json_object_set_new(root, "cpu", json_string(cpu_name(&scratch)));
+  if (!set_hash(root, "log_hash", outputs->directory, "log.csv", scratch, problem) ||
+      !set_hash(root, "probes_hash", outputs->directory, "probes.csv", scratch, problem)) {
+    json_decref(root);
+    json_decref(cells);
+    return false;
+  }
   for (int c = 0; c < plan->experiment->n_cells; c++)
     json_array_append_new(cells, manifest_cell(plan, &plan->experiment->cell[c]));
   json_object_set_new(root, "cells", cells);

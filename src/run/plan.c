@@ -6,6 +6,7 @@
 #include "numeric/elementary.h"
 #include "walk/eye.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <omp.h>
 #include <string.h>
@@ -73,10 +74,19 @@ struct pixel *plan_film(const struct scene *scene, int *n_points, struct arena *
   return pixel;
 }
 
+// Emitted in one iteration; each stores several, of about a hundred bytes with their place in the
+// grid.
+enum { MOST_PHOTONS = 1 << 26 };
+
 bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
                     struct problem *problem) {
   *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
   if (!cell->integrator->photons) return true;
+  if (cell->photons > MOST_PHOTONS)
+    return problem_set(problem,
+                       "photons: %" PRIu64 " at once do not fit into memory; more iterations of "
+                       "fewer photons say the same",
+                       cell->photons);
   double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
   return grid_radius_is_resolved(scene->bounds, last, problem);
 }

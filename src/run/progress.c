@@ -25,7 +25,8 @@ struct progress progress_begin(const char *what, double total, double already, b
 
 static void progress_print(struct progress *progress, double now) {
   double worked = progress->done - progress->resumed, elapsed = now - progress->started_s;
-  double left = worked > 0 ? elapsed * (progress->total - progress->done) / worked : 0;
+  double rest = progress->total - progress->done; // rounding may leave it below zero
+  double left = worked > 0 && rest > 0 ? elapsed * rest / worked : 0;
   fprintf(stderr, "%s%s: %5.1f %%, %.0f s elapsed, about %.0f s left%s",
           progress->terminal ? "\r" : "", progress->what, 100 * progress->done / progress->total,
           elapsed, left, progress->terminal ? "   " : "\n");
