@@ -1,11 +1,14 @@
 // fit.json and curves.csv.
 #include "analysis/fit.h"
 
+#include "analysis/fit_keys.h"
 #include "base/file.h"
 
 #include <assert.h>
 #include <jansson.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static json_t *number(double x) { return isfinite(x) ? json_real(x) : json_null(); }
 
@@ -34,14 +37,17 @@ static json_t *tests_json(const struct fit_row *row) {
   return array;
 }
 
+static json_t *key_json(const struct fit_key *key, const struct cell *cell) {
+  char buffer[FIT_KEY_SIZE];
+  const char *text = key->text(cell, 17, buffer);
+  if (key->kind == KEY_NAME) return json_string(text);
+  return key->kind == KEY_REAL ? number(strtod(text, NULL)) : json_integer(strtoll(text, NULL, 10));
+}
+
 static void set_identity(json_t *object, const struct fit_row *row) {
-  const struct cell *cell = row->cell;
-  set(object, "scene", json_string(cell->scene));
+  for (int k = 0; k < FIT_KEYS; k++)
+    set(object, fit_keys[k].name, key_json(&fit_keys[k], row->cell));
   set(object, "probe", json_pack("[i, i]", row->probe->x, row->probe->y));
-  set(object, "integrator", json_string(cell->integrator->name));
-  set(object, "kernel", json_string(cell->kernel->name));
-  set(object, "law", json_string(cell->law->name));
-  set(object, "alpha", number(cell->alpha));
   set(object, "quantity", json_string(quantity_name(row->quantity)));
   set(object, "closed_form", json_boolean(row->closed_form));
   set(object, "first_iteration", json_integer((json_int_t)row->first));
@@ -94,26 +100,29 @@ bool fit_write_json(const struct fit *fit, const char *path, struct problem *pro
   return begun && file_commit(&out, problem);
 }
 
-// Names hold no commas or quotes but a scene's may: a quote is doubled.
-static void print_quoted(FILE *stream, const char *text) {
+// Our names need no quotes, but a scene's may: then a quote is doubled.
+static void print_field(FILE *stream, const char *text) {
+  if (!strpbrk(text, ",\"\n")) {
+    fprintf(stream, "%s,", text);
+    return;
+  }
   fputc('"', stream);
   for (; *text; text++) {
     if (*text == '"') fputc('"', stream);
     fputc(*text, stream);
   }
-  fputc('"', stream);
+  fputs("\",", stream);
 }
 
 static void print_point(FILE *stream, const struct fit_point *point) {
   const struct fit_row *row = point->row;
-  const struct cell *cell = row->cell;
   // A curve that was fitted, not predicted, to a bias that was not found would only show noise.
   bool known = row->quantity == QUANTITY_VARIANCE || isfinite(row->coefficient_theory) ||
                row->verdict == VERDICT_AGREE || row->verdict == VERDICT_DISAGREE;
-  print_quoted(stream, cell->scene);
-  fprintf(stream, ",%d,%d,%s,%s,%s,%.17g,%s,%llu", row->probe->x, row->probe->y,
-          cell->integrator->name, cell->kernel->name, cell->law->name, cell->alpha,
-          quantity_name(row->quantity), (unsigned long long)point->n);
+  char buffer[FIT_KEY_SIZE];
+  for (int k = 0; k < FIT_KEYS; k++) print_field(stream, fit_keys[k].text(row->cell, 17, buffer));
+  fprintf(stream, "%d,%d,%s,%llu", row->probe->x, row->probe->y, quantity_name(row->quantity),
+          (unsigned long long)point->n);
   const double value[] = {point->measured, point->lower, point->upper, point->pooled,
                           known ? point->predicted : NAN};
   for (int k = 0; k < 5; k++)
@@ -124,8 +133,8 @@ static void print_point(FILE *stream, const struct fit_point *point) {
 bool fit_write_curves(const struct fit *fit, const char *path, struct problem *problem) {
   struct file_out out;
   if (!file_begin(&out, path, problem)) return false;
-  fputs("scene,x,y,integrator,kernel,law,alpha,quantity,N,measured,lower,upper,pooled,predicted\n",
-        out.stream);
+  for (int k = 0; k < FIT_KEYS; k++) fprintf(out.stream, "%s,", fit_keys[k].name);
+  fputs("x,y,quantity,N,measured,lower,upper,pooled,predicted\n", out.stream);
   for (int p = 0; p < fit->n_points; p++) print_point(out.stream, &fit->point[p]);
   return file_commit(&out, problem);
 }

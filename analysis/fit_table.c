@@ -2,14 +2,16 @@
 #define _POSIX_C_SOURCE 200809L // fileno, isatty
 
 #include "analysis/fit.h"
+#include "analysis/fit_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { CELL_SIZE = 96, MAX_COLUMNS = 12 };
+enum { CELL_SIZE = 96 };
 
+// A column beside those of the keys.
 struct column {
   const char *head;
   bool left;         // aligned
@@ -26,19 +28,8 @@ static void print_number(char *text, const char *format, double x) {
     copy(text, "-");
 }
 
-static void print_scene(const struct fit_row *row, char *text) { copy(text, row->cell->scene); }
-static void print_integrator(const struct fit_row *row, char *text) {
-  copy(text, row->cell->integrator->name);
-}
-static void print_kernel(const struct fit_row *row, char *text) {
-  copy(text, row->cell->kernel->name);
-}
-static void print_law(const struct fit_row *row, char *text) { copy(text, row->cell->law->name); }
 static void print_probe(const struct fit_row *row, char *text) {
   snprintf(text, CELL_SIZE, "%d,%d", row->probe->x, row->probe->y);
-}
-static void print_alpha(const struct fit_row *row, char *text) {
-  print_number(text, "%.4g", row->cell->alpha);
 }
 static void print_quantity(const struct fit_row *row, char *text) {
   copy(text, row->quantity == QUANTITY_VARIANCE ? "variance" : "bias");
@@ -78,28 +69,51 @@ static void print_verdict(const struct fit_row *row, char *text) {
 }
 
 static const struct column columns[] = {
-    {"scene", true, false, print_scene},       {"integrator", true, true, print_integrator},
-    {"kernel", true, true, print_kernel},      {"law", true, true, print_law},
-    {"probe", false, true, print_probe},       {"alpha", false, false, print_alpha},
-    {"quantity", true, false, print_quantity}, {"from", false, true, print_first},
-    {"theory", false, false, print_theory},    {"rate", false, false, print_rate},
-    {"95 %", false, false, print_interval},    {"coeff/theory", false, false, print_ratio},
-    {"verdict", true, false, print_verdict},
+    {"probe", false, true, print_probe},         {"quantity", true, false, print_quantity},
+    {"from", false, true, print_first},          {"theory", false, false, print_theory},
+    {"rate", false, false, print_rate},          {"95 %", false, false, print_interval},
+    {"coeff/theory", false, false, print_ratio}, {"verdict", true, false, print_verdict},
 };
-enum { N_COLUMNS = sizeof columns / sizeof *columns };
+enum { N_COLUMNS = FIT_KEYS + sizeof columns / sizeof *columns };
 
-// Width of a column, 0 if it is left out.
-static int column_width(const struct fit *fit, const struct column *column) {
-  size_t width = strlen(column->head);
-  char text[CELL_SIZE], first[CELL_SIZE];
-  bool varies = false;
+// How column c is set: keys first, then `columns`.
+struct setting {
+  const char *head;
+  bool left, shown;
+  int width, digits;
+};
+
+static const char *text_of(const struct fit_row *row, int c, int digits, char buffer[CELL_SIZE]) {
+  if (c < FIT_KEYS) return fit_keys[c].text(row->cell, digits, buffer);
+  columns[c - FIT_KEYS].print(row, buffer);
+  return buffer;
+}
+
+static bool differ(const struct fit_row *row, int c, int digits) {
+  char one[CELL_SIZE], other[CELL_SIZE];
+  return strcmp(text_of(&row[0], c, digits, one), text_of(&row[1], c, digits, other)) != 0;
+}
+
+// Where one row differs from the next, so does what is shown of them: from four digits up.
+static struct setting column_setting(const struct fit *fit, int c) {
+  bool key = c < FIT_KEYS;
+  const struct column *column = key ? NULL : &columns[c - FIT_KEYS];
+  struct setting set = {.head = key ? fit_keys[c].name : column->head,
+                        .left = key ? fit_keys[c].kind == KEY_NAME : column->left,
+                        .shown = key ? fit_keys[c].always : !column->only_varying,
+                        .digits = 4};
+  for (int r = 0; r + 1 < fit->n_rows; r++)
+    if (differ(&fit->row[r], c, 17)) {
+      set.shown = true;
+      while (!differ(&fit->row[r], c, set.digits)) set.digits++;
+    }
+  set.width = (int)strlen(set.head);
   for (int r = 0; r < fit->n_rows; r++) {
-    column->print(&fit->row[r], text);
-    if (r == 0) copy(first, text);
-    varies |= strcmp(first, text) != 0;
-    width = strlen(text) > width ? strlen(text) : width;
+    char buffer[CELL_SIZE];
+    int length = (int)strlen(text_of(&fit->row[r], c, set.digits, buffer));
+    set.width = length > set.width ? length : set.width;
   }
-  return column->only_varying && !varies ? 0 : (int)width;
+  return set;
 }
 
 static const char *colour_of(enum verdict verdict) {
@@ -112,21 +126,21 @@ static bool in_colour(FILE *stream) {
   return !(forbidden && *forbidden) && isatty(fileno(stream));
 }
 
-static void print_cell(FILE *stream, int c, int width, const char *text) {
+static void print_cell(FILE *stream, int c, const struct setting *set, const char *text) {
   if (c == N_COLUMNS - 1)
     fprintf(stream, "%s", text);
   else
-    fprintf(stream, columns[c].left ? "%-*s  " : "%*s  ", width, text);
+    fprintf(stream, set->left ? "%-*s  " : "%*s  ", set->width, text);
 }
 
-static void print_row(const struct fit_row *row, const int *width, bool colour, FILE *stream) {
-  char text[CELL_SIZE];
+static void print_row(const struct fit_row *row, const struct setting *set, bool colour,
+                      FILE *stream) {
+  char buffer[CELL_SIZE];
   for (int c = 0; c < N_COLUMNS; c++) {
-    if (!width[c]) continue;
-    columns[c].print(row, text);
+    if (!set[c].shown) continue;
     bool coloured = colour && c == N_COLUMNS - 1;
     if (coloured) fputs(colour_of(row->verdict), stream);
-    print_cell(stream, c, width[c], text);
+    print_cell(stream, c, &set[c], text_of(row, c, set[c].digits, buffer));
     if (coloured) fputs("\033[0m", stream);
   }
   fputc('\n', stream);
@@ -145,12 +159,13 @@ static void print_counts(const struct fit *fit, FILE *stream) {
 
 void fit_print_table(const struct fit *fit, FILE *stream) {
   bool colour = in_colour(stream);
-  int width[N_COLUMNS];
-  for (int c = 0; c < N_COLUMNS; c++) width[c] = column_width(fit, &columns[c]);
-  for (int c = 0; c < N_COLUMNS; c++)
-    if (width[c]) print_cell(stream, c, width[c], columns[c].head);
+  struct setting set[N_COLUMNS];
+  for (int c = 0; c < N_COLUMNS; c++) {
+    set[c] = column_setting(fit, c);
+    if (set[c].shown) print_cell(stream, c, &set[c], set[c].head);
+  }
   fputc('\n', stream);
-  for (int r = 0; r < fit->n_rows; r++) print_row(&fit->row[r], width, colour, stream);
+  for (int r = 0; r < fit->n_rows; r++) print_row(&fit->row[r], set, colour, stream);
   fprintf(stream, "%s: %s%s%s (", fit->experiment->name, colour ? colour_of(fit->verdict) : "",
           verdict_names[fit->verdict], colour ? "\033[0m" : "");
   print_counts(fit, stream);

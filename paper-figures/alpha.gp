@@ -13,7 +13,7 @@ data = ARG1."/curves.csv"
 figures = ARG1."/figures"
 quoted(path) = "'".system("printf %s \"".path."\" | sed \"s/'/'\\\\\\\\''/g\"")."'"
 header = system("head -n 1 ".quoted(data)." 2>/dev/null")
-wanted = "scene,x,y,integrator,kernel,law,alpha,quantity,N,measured,lower,upper,pooled,predicted"
+wanted = "cell,scene,integrator,kernel,law,alpha,radius,photons,iterations,runs,seed,direct,depth,pixel,x,y,quantity,N,measured,lower,upper,pooled,predicted"
 if (header ne wanted) {
   print data.": missing, or its columns are not ".wanted
   exit status 1

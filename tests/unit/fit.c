@@ -1,6 +1,7 @@
 // What the fit writes: JSON another program can read, a table a person can read, a CSV for the
 // figure; and how verdicts are put together.
 #define _GNU_SOURCE // mkdtemp
+#include "analysis/fit_keys.h"
 #include "base/file.h"
 #include "tests/statistical/fit_synthetic.h"
 
@@ -58,6 +59,7 @@ static void test_json(void **state) {
   for (size_t r = 0; r < 2; r++) {
     json_t *row = json_array_get(cells, r);
     json_t *ci = json_object_get(row, "rate_ci95");
+    assert_true(real_at(row, "alpha") == base.alpha);
     assert_true(real_at(row, "rate") == fit.row[r].rate); // 17 digits: the same double
     assert_true(real_at(row, "rate_se") == fit.row[r].rate_se);
     assert_true(json_real_value(json_array_get(ci, 0)) == fit.row[r].rate_lo);
@@ -83,12 +85,21 @@ static const struct key top_keys[] = {{"experiment", STRING},
                                       {"verdict", STRING},
                                       {"cells", LIST},
                                       END};
-static const struct key cell_keys[] = {{"scene", STRING},
+static const struct key cell_keys[] = {{"cell", COUNT},
+                                       {"scene", STRING},
                                        {"probe", PAIR},
                                        {"integrator", STRING},
                                        {"kernel", STRING},
                                        {"law", STRING},
                                        {"alpha", NUMBER},
+                                       {"radius", NUMBER},
+                                       {"photons", COUNT},
+                                       {"iterations", COUNT},
+                                       {"runs", COUNT},
+                                       {"seed", STRING},
+                                       {"direct", STRING},
+                                       {"depth", COUNT},
+                                       {"pixel", STRING},
                                        {"quantity", STRING},
                                        {"rate_theory", NUMBER},
                                        {"rate", NUMBER},
@@ -239,7 +250,14 @@ static int count_lines(const char *text) {
 static void test_curves(void **state) {
   (void)state;
   struct fit fit = synthetic_fit(&base, 1, &arena);
-  assert_int_equal(count_lines(written(&fit, fit_write_curves)), 1 + 4);
+  const char *text = written(&fit, fit_write_curves);
+  assert_int_equal(count_lines(text), 1 + 4);
+  for (int k = 0; k < FIT_KEYS; k++) { // the first columns, in this order
+    size_t length = strlen(fit_keys[k].name);
+    assert_memory_equal(text, fit_keys[k].name, length);
+    assert_int_equal(text[length], ',');
+    text += length + 1;
+  }
   assert_int_equal(fit.n_points, 4);
   for (int p = 0; p < 4; p++) {
     const struct fit_point *point = &fit.point[p];
@@ -339,6 +357,47 @@ static void test_table(void **state) {
   free(text);
 }
 
+// The words of a line.
+static int count_words(const char *line) {
+  int words = 0;
+  for (; *line != '\n'; line++) words += *line != ' ' && (line[1] == ' ' || line[1] == '\n');
+  return words;
+}
+
+// Two cells that differ in one key only: the table has a column more than one of equal cells.
+static void test_table_tells_cells_apart(void **state) {
+  (void)state;
+  struct fit fit = synthetic_fit(&base, 1, &arena);
+  struct cell cell = *fit.row[0].cell, other[FIT_KEYS];
+  for (int k = 0; k < FIT_KEYS; k++) other[k] = cell;
+  struct integrator_type integrator = *cell.integrator;
+  integrator.name = "another";
+  int k = 0;
+  other[k++].number++, other[k++].scene = "another", other[k++].integrator = &integrator;
+  other[k++].kernel = kernel_find("cone"), other[k++].law = law_find("power");
+  other[k++].alpha = 0.66667, other[k++].radius = 1.0000005, other[k++].photons++;
+  other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
+  other[k++].depth++, other[k++].footprint = true;
+  assert_int_equal(k, FIT_KEYS);
+  fit.row[1] = fit.row[0];
+  char *same = table_of(&fit);
+  for (k = 0; k < FIT_KEYS; k++) {
+    assert_non_null(other[k].law);
+    fit.row[1].cell = &other[k];
+    char *text = table_of(&fit), *first = strchr(text, '\n') + 1, *second = strchr(first, '\n') + 1;
+    assert_non_null(strstr(text, fit_keys[k].name));
+    assert_int_equal(count_words(text), count_words(same) + !fit_keys[k].always);
+    assert_memory_not_equal(first, second, (size_t)(second - first));
+    for (int c = 0; c < FIT_KEYS; c++) {
+      char one[FIT_KEY_SIZE], two[FIT_KEY_SIZE];
+      bool differ = strcmp(fit_keys[c].text(&cell, 17, one), fit_keys[c].text(&other[k], 17, two));
+      assert_int_equal(differ, c == k);
+    }
+    free(text);
+  }
+  free(same);
+}
+
 // What there is no fit for says why, and the last line counts the verdicts.
 static void test_table_says_why(void **state) {
   (void)state;
@@ -387,6 +446,8 @@ int main(void) {
       {"two values have Cauchy's interval", test_interval_of_two_values, 0, 0, 0},
       {"the predicted curves are those of theory 3.2", test_predicted_curves, 0, 0, 0},
       {"the table has a line per row, no colour in a file, at most 110 columns", test_table, 0, 0,
+       0},
+      {"the table tells cells apart by the key that differs", test_table_tells_cells_apart, 0, 0,
        0},
       {"the table says why there is no fit", test_table_says_why, 0, 0, 0},
       {"the level is divided over all tests of the run", test_level, 0, 0, 0},

@@ -1,0 +1,58 @@
+#include "analysis/fit_keys.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static const char *count(uint64_t n, char *buffer) {
+  snprintf(buffer, FIT_KEY_SIZE, "%" PRIu64, n);
+  return buffer;
+}
+
+static const char *real(double x, int digits, char *buffer) {
+  snprintf(buffer, FIT_KEY_SIZE, "%.*g", digits, x);
+  return buffer;
+}
+
+// A function for each key; not every one needs the digits or the buffer.
+#define KEY(name, value)                                                                           \
+  static const char *key_##name(const struct cell *cell, int digits, char *buffer) {               \
+    (void)digits, (void)buffer;                                                                    \
+    return value;                                                                                  \
+  }
+KEY(cell, count((uint64_t)cell->number, buffer))
+KEY(scene, cell->scene)
+KEY(integrator, cell->integrator->name)
+KEY(kernel, cell->kernel->name)
+KEY(law, cell->law->name)
+KEY(alpha, real(cell->alpha, digits, buffer))
+KEY(radius, real(cell->radius, digits, buffer))
+KEY(photons, count(cell->photons, buffer))
+KEY(iterations, count(cell->iterations, buffer))
+KEY(runs, count(cell->runs, buffer))
+KEY(direct, cell->direct == DIRECT_NEE ? "nee" : "photons")
+KEY(depth, count((uint64_t)cell->depth, buffer))
+KEY(pixel, cell->footprint ? "footprint" : "centre")
+
+// As in manifest.json: JSON's numbers do not hold 64 bits everywhere.
+static const char *key_seed(const struct cell *cell, int digits, char *buffer) {
+  (void)digits;
+  snprintf(buffer, FIT_KEY_SIZE, "%016" PRIx64, cell->seed);
+  return buffer;
+}
+
+const struct fit_key fit_keys[FIT_KEYS] = {
+    {"cell", KEY_COUNT, false, key_cell},
+    {"scene", KEY_NAME, true, key_scene},
+    {"integrator", KEY_NAME, false, key_integrator},
+    {"kernel", KEY_NAME, false, key_kernel},
+    {"law", KEY_NAME, false, key_law},
+    {"alpha", KEY_REAL, true, key_alpha},
+    {"radius", KEY_REAL, false, key_radius},
+    {"photons", KEY_COUNT, false, key_photons},
+    {"iterations", KEY_COUNT, false, key_iterations},
+    {"runs", KEY_COUNT, false, key_runs},
+    {"seed", KEY_NAME, false, key_seed},
+    {"direct", KEY_NAME, false, key_direct},
+    {"depth", KEY_COUNT, false, key_depth},
+    {"pixel", KEY_NAME, false, key_pixel},
+};
