@@ -62,8 +62,13 @@ static void run_once(const struct group_plan *plan, void *state, uint64_t run, d
   }
 }
 
+int block_runs(const struct group_plan *plan, uint64_t block) {
+  uint64_t left = plan->cell->runs - block * RUNS_PER_BLOCK;
+  return left < RUNS_PER_BLOCK ? (int)left : RUNS_PER_BLOCK;
+}
+
 void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
-                   struct arena scratch) {
+                   struct progress *progress, double run_work, struct arena scratch) {
   const struct measurement *measure = &plan->measure;
   long frame_size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
   double *frame = arena_new(&scratch, double, frame_size);
@@ -74,12 +79,11 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                          plan->images ? frame_size : 0};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   void *state = plan->cell->integrator->create(measure, &scratch);
-  uint64_t first = block * RUNS_PER_BLOCK + 1, last = first + RUNS_PER_BLOCK - 1;
-  last = last < plan->cell->runs ? last : plan->cell->runs;
-  for (uint64_t run = first; run <= last; run++) {
-    run_once(plan, state, run, frame, &sum, value);
+  for (int run = 1; run <= block_runs(plan, block); run++) {
+    run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value);
     for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(value[k]);
     moments_tree_push(&tree, leaf, &scratch);
+    progress_advance(progress, run_work);
   }
   moments_tree_root(&tree, out);
 }

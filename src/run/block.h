@@ -4,10 +4,15 @@
 #define RUN_BLOCK_H
 
 #include "run/plan.h"
+#include "run/progress.h"
 
-// Moments over runs 16 block + 1 ... of each of the plan's `width` numbers.
+// Moments over runs 16 block + 1 ... of each of the plan's `width` numbers. After each run the
+// progress advances by `run_work`.
 void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
-                   struct arena scratch);
+                   struct progress *, double run_work, struct arena scratch);
+
+// How many runs the block has: RUNS_PER_BLOCK, or less at the end.
+int block_runs(const struct group_plan *, uint64_t block);
 
 // What a block took; not part of any result.
 struct block_time {

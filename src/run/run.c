@@ -25,11 +25,6 @@ struct units {
   double total_s, left_s; // of the groups that have something left: all their blocks; those listed
 };
 
-static double work_of(const struct group_plan *plan, double run_s, uint64_t block) {
-  uint64_t runs = plan->cell->runs - block * RUNS_PER_BLOCK;
-  return run_s * (double)(runs < RUNS_PER_BLOCK ? runs : RUNS_PER_BLOCK);
-}
-
 // Seconds one run of a group takes on one thread: a few of its iterations, spread over all of them,
 // until a twentieth of a second has passed.
 static double measure_run_s(const struct group_plan *plan, struct arena scratch) {
@@ -72,7 +67,7 @@ static void add_missing(const struct plan *plan, int g, const char *folder, stru
   double run_s = measure_run_s(group, *arena);
   units->total_s += run_s * (double)group->cell->runs;
   for (ptrdiff_t k = first; k < units->count; k++) {
-    units->item[k].work = work_of(group, run_s, units->item[k].block);
+    units->item[k].work = run_s * block_runs(group, units->item[k].block);
     units->left_s += units->item[k].work;
   }
 }
@@ -92,13 +87,14 @@ static double thread_cpu_s(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static void compute(const struct group_plan *plan, uint64_t block, const char *folder,
-                    struct arena scratch) {
+static void compute(const struct group_plan *plan, const struct unit *unit, const char *folder,
+                    struct progress *progress, struct arena scratch) {
   double wall = progress_clock_s(), cpu = thread_cpu_s();
   struct moments *moments = arena_new(&scratch, struct moments, plan->width);
-  block_compute(plan, block, moments, scratch);
+  double run_work = unit->work / block_runs(plan, unit->block);
+  block_compute(plan, unit->block, moments, progress, run_work, scratch);
   struct block_time time = {progress_clock_s() - wall, thread_cpu_s() - cpu};
-  block_write(plan, block, folder, moments, time, scratch);
+  block_write(plan, unit->block, folder, moments, time, scratch);
 }
 
 // All units on all threads. Each writes its own file, so there is nothing to share but the queue.
@@ -111,8 +107,7 @@ static void compute_all(const struct plan *plan, const char *folder, const struc
     for (ptrdiff_t k = 0; k < units->count; k++) {
       if (interrupt_signal()) continue;
       const struct unit *unit = &units->item[k];
-      compute(&plan->group[unit->group], unit->block, folder, scratch);
-      progress_advance(progress, unit->work);
+      compute(&plan->group[unit->group], unit, folder, progress, scratch);
     }
     arena_release(scratch);
   }

@@ -10,7 +10,8 @@ static const char *begin_blocks(const struct plan *plan, const char *directory) 
   struct problem problem = {0};
   assert_true(file_make_directory(blocks, &problem));
   struct moments *moments = arena_new(&arena, struct moments, plan->group[0].width);
-  block_compute(&plan->group[0], 1, moments, arena);
+  struct progress silent = {.quiet = true};
+  block_compute(&plan->group[0], 1, moments, &silent, 0, arena);
   block_write(&plan->group[0], 1, blocks, moments, (struct block_time){1234.5, 0.5}, arena);
   return blocks;
 }
