@@ -6,4 +6,4 @@ names = "'Uniform light' 'Quadratic light' 'Point light' 'Cornell box'"
 figure = "alpha"
 slopes = 1
 results = ARG1
-load system("dirname \"".ARG0."\"")."/convergence.gp"
+load system("dirname \"".ARG0."\"")."/convergence.part.gp"

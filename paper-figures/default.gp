@@ -7,4 +7,4 @@ names = ""
 figure = "default"
 slopes = 0
 results = ARG1
-load system("dirname \"".ARG0."\"")."/convergence.gp"
+load system("dirname \"".ARG0."\"")."/convergence.part.gp"

@@ -1,9 +1,9 @@
-# What alpha.gp and default.gp share: variance and |bias| of the average of N iterations against N,
-# a column of panels for each scene, a curve for each cell, at the first of the scene's probes in
-# the file. Points: measured over runs with 95 % intervals; lines: the predicted average (no slope
-# is fitted to these points). Where theory has no closed form a line has theory's exponent and
-# fitted constants. A bias below two standard errors is drawn hollow at its upper limit, with an
-# arrow down. Loaded with these set:
+# What the figures of convergence share (".part" because an experiment's own figure is NAME.gp):
+# variance and |bias| of the average of N iterations against N, a column of panels for each scene, a
+# curve for each cell, at the first of the scene's probes in the file. Points: measured over runs
+# with 95 % intervals; lines: the predicted average (no slope is fitted to these points). Where
+# theory has no closed form a line has theory's exponent and fitted constants. A bias below two
+# standard errors is drawn hollow at its upper limit, with an arrow down. Loaded with these set:
 #   results       the directory; curves.csv is read, figures/FIGURE.* is written
 #   figure        name of the figure
 #   scenes, names of the columns and their titles; "": the first six of the file
@@ -161,7 +161,7 @@ per_row = int((paper_x - 0.81) / (0.062 * longest + 0.38)) # as gnuplot reckons
 per_row = per_row < 1 ? 1 : per_row > n_shown ? n_shown : per_row
 key_rows = (n_shown + per_row - 1) / per_row
 foot = left_out eq "" ? 0 : 0.14
-more = foot + 0.15 * (key_rows - 1)
+more = foot + 0.1 * (key_rows - 1)
 paper_y = 4.2 + more
 left = 0.48 / paper_x; right = 1 - 0.33 / paper_x; gap = 0.555 / paper_x
 width = (right - left - gap * (columns - 1)) / columns
