@@ -52,10 +52,20 @@ if (scenes eq "") {
 }
 columns = words(scenes)
 
+# A variance is drawn as it stands, a bias by its size.
+z = 1.959963984540054
+error(q) = (column("upper") - column("lower")) / (2 * z)
+found(q) = q eq "variance" || abs(column("measured")) >= 2 * error(q)
+lower(q) = q eq "variance" ? column("lower") : abs(column("measured")) - z * error(q)
+upper(q) = q eq "variance" ? column("upper") : abs(column("measured")) + z * error(q)
+drawn(p) = p == 0 ? NaN : abs(p)
+# Whether a panel in logarithms shows anything of a row.
+visible(q) = upper(q) > 0 || drawn(column("predicted")) > 0
+
 # ---- second reading: the cells of each scene, and what tells them apart ----
 n_cells = int(n_cells)
 array scene_of[n_cells]; array values[n_cells]
-array x_of[columns]; array y_of[columns]; array pixel[columns]
+array pixel[columns]
 do for [i = 1:n_cells] { scene_of[i] = 0; values[i] = "" }
 do for [c = 1:columns] { pixel[c] = "" }
 rows = ""; lines = ""; biased = ""
@@ -70,17 +80,22 @@ add_value(i, j) = (values[i] = values[i].strcol(word(keys, j))." ", 0)
 add_cell(i, c) = scene_of[i] ? 0 : (scene_of[i] = c, sum [j = 1:n_keys] add_value(i, j))
 # Rows of a scene that is shown, at its probe that is shown.
 take(i, c, q, xy) = c == 0 ? 0 : (add_pixel(c, xy), add_biased(c, q, column("predicted")), \
-  pixel[c] ne xy ? 0 : (add_cell(i, c), add_row(row_name(q, i)), \
+  pixel[c] ne xy ? 0 : (add_cell(i, c), !visible(q) ? 0 : add_row(row_name(q, i)), \
     add_line(row_name(q, i), column("predicted"))))
 set table $seen
 plot data using (take(int(column("cell")) + 1, number_of(strcol("scene")), strcol("quantity"), \
   strcol("x").",".strcol("y")), 0):(0) with points
 unset table
-# A scene without any curve is an error; a curve the fit could not predict is named in its panel.
-do for [c = 1:columns] { if (pixel[c] eq "") {
-  print sprintf("%s: nothing of %s", data, word(scenes, c))
-  exit status 1
+# A scene that was named and has no curve is an error; a curve the fit could not predict is named in
+# its panel.
+do for [quantity in "variance bias"] { do for [c = 1:columns] {
+  n_here = sum [i = 1:n_cells] (scene_of[i] == c && strstrt(rows, row_name(quantity, i)) > 0)
+  if (names ne "" && n_here == 0) {
+    print sprintf("%s: no %s of %s", data, quantity, word(scenes, c))
+    exit status 1
+  }
 } }
+if (rows eq "") { print data.": has nothing to draw"; exit status 1 }
 
 # A key varies if it does among the cells of one scene.
 array one[columns]
@@ -124,13 +139,6 @@ if (left_out ne "") { print data.": ".left_out }
 # ---- the points: blocks $variance1, $bias1, ... of N, size, lower, upper, predicted, found ----
 is_mine(i, q) = column("cell") == i - 1 && strcol("quantity") eq q && \
   strcol("x").",".strcol("y") eq pixel[scene_of[i]]
-# A variance is drawn as it stands, a bias by its size.
-z = 1.959963984540054
-error(q) = (column("upper") - column("lower")) / (2 * z)
-found(q) = q eq "variance" || abs(column("measured")) >= 2 * error(q)
-lower(q) = q eq "variance" ? column("lower") : abs(column("measured")) - z * error(q)
-upper(q) = q eq "variance" ? column("upper") : abs(column("measured")) + z * error(q)
-drawn(p) = p == 0 ? NaN : abs(p)
 block(q, i) = "$".q.i
 is_shown(i, q) = scene_of[i] && series_of[i] <= most && strstrt(rows, row_name(q, i))
 do for [quantity in "variance bias"] { do for [i = 1:n_cells] { if (is_shown(i, quantity)) {
@@ -214,19 +222,26 @@ do for [terminal_name in "pdf svg png"] {
       note = row == 2 && !strstrt(biased, sprintf("|%d|", c)) ? "predicted: no bias" : ""
       if (unresolved ne "") { note = "rate not resolved: ".noted.unresolved }
       if (absent ne "") { note = "not resolvable: ".noted.absent }
+      if (here eq "") { note = "no ".quantity." measured" }
       set label 1 note at graph 0.05,0.07 left textcolor "#666666" font ",7"
-      plot \
-        for [i in here] block(quantity, i) using 1:5 with lines linewidth 0.9 dashtype dash(series_of[int(i)]) \
-          linecolor rgb colour(series_of[int(i)]), \
-        for [i in here] block(quantity, i) using 1:($6 == 1 ? $2 : NaN):3:4 with yerrorbars linewidth 0.6 \
-          pointtype full(series_of[int(i)]) linecolor rgb colour(series_of[int(i)]), \
-        for [i in here] block(quantity, i) using 1:($6 == 1 ? NaN : $4):(0):(-0.35 * $4) with vectors \
-          head size screen 0.003,25 filled linewidth 0.4 linecolor rgb colour(series_of[int(i)]), \
-        for [i in here] block(quantity, i) using 1:($6 == 1 ? NaN : $4) with points \
-          pointtype hollow(series_of[int(i)]) linewidth 0.6 linecolor rgb colour(series_of[int(i)]), \
-        for [i in here] block(quantity, i) using 1:($1 == n_max ? $5 : NaN):\
-          (slope_text(series_of[int(i)], quantity)) with labels left offset 0.5,0 font ",7" \
-          textcolor rgb colour(series_of[int(i)])
+      if (here eq "") {
+        set yrange [0.1:1]
+        plot NaN
+        set yrange [*:*]
+      } else {
+        plot \
+          for [i in here] block(quantity, i) using 1:5 with lines linewidth 0.9 dashtype dash(series_of[int(i)]) \
+            linecolor rgb colour(series_of[int(i)]), \
+          for [i in here] block(quantity, i) using 1:($6 == 1 ? $2 : NaN):3:4 with yerrorbars linewidth 0.6 \
+            pointtype full(series_of[int(i)]) linecolor rgb colour(series_of[int(i)]), \
+          for [i in here] block(quantity, i) using 1:($6 == 1 ? NaN : $4):(0):(-0.35 * $4) with vectors \
+            head size screen 0.003,25 filled linewidth 0.4 linecolor rgb colour(series_of[int(i)]), \
+          for [i in here] block(quantity, i) using 1:($6 == 1 ? NaN : $4) with points \
+            pointtype hollow(series_of[int(i)]) linewidth 0.6 linecolor rgb colour(series_of[int(i)]), \
+          for [i in here] block(quantity, i) using 1:($1 == n_max ? $5 : NaN):\
+            (slope_text(series_of[int(i)], quantity)) with labels left offset 0.5,0 font ",7" \
+            textcolor rgb colour(series_of[int(i)])
+      }
     }
   }
   # One legend for all panels.
