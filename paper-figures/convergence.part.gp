@@ -222,7 +222,7 @@ do for [terminal_name in "pdf svg png"] {
       note = row == 2 && !strstrt(biased, sprintf("|%d|", c)) ? "predicted: no bias" : ""
       if (unresolved ne "") { note = "rate not resolved: ".noted.unresolved }
       if (absent ne "") { note = "not resolvable: ".noted.absent }
-      if (here eq "") { note = "no ".quantity." measured" }
+      if (here eq "") { note = quantity.": nothing to draw" }
       set label 1 note at graph 0.05,0.07 left textcolor "#666666" font ",7"
       if (here eq "") {
         set yrange [0.1:1]
