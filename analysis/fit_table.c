@@ -94,7 +94,14 @@ static bool differ(const struct fit_row *row, int c, int digits) {
   return strcmp(text_of(&row[0], c, digits, one), text_of(&row[1], c, digits, other)) != 0;
 }
 
-// Where one row differs from the next, so does what is shown of them: from four digits up.
+// What differs from scene to scene needs no column: the scene tells it.
+static bool must_differ(const struct fit_row *row, int c) {
+  bool told_by_scene = c < FIT_KEYS && !fit_keys[c].always;
+  return differ(row, c, 17) &&
+         !(told_by_scene && strcmp(row[0].cell->scene, row[1].cell->scene) != 0);
+}
+
+// Where one row must differ from the next, so does what is shown of them: from four digits up.
 static struct setting column_setting(const struct fit *fit, int c) {
   bool key = c < FIT_KEYS;
   const struct column *column = key ? NULL : &columns[c - FIT_KEYS];
@@ -103,7 +110,7 @@ static struct setting column_setting(const struct fit *fit, int c) {
                         .shown = key ? fit_keys[c].always : !column->only_varying,
                         .digits = 4};
   for (int r = 0; r + 1 < fit->n_rows; r++)
-    if (differ(&fit->row[r], c, 17)) {
+    if (must_differ(&fit->row[r], c)) {
       set.shown = true;
       while (!differ(&fit->row[r], c, set.digits)) set.digits++;
     }
