@@ -1,8 +1,9 @@
 // fit.json and curves.csv.
 #include "analysis/fit.h"
 
-#include "analysis/fit_keys.h"
 #include "base/file.h"
+#include "experiment/cell_keys.h"
+#include "log/cell_json.h"
 
 #include <assert.h>
 #include <jansson.h>
@@ -37,16 +38,8 @@ static json_t *tests_json(const struct fit_row *row) {
   return array;
 }
 
-static json_t *key_json(const struct fit_key *key, const struct cell *cell) {
-  char buffer[FIT_KEY_SIZE];
-  const char *text = key->text(cell, 17, buffer);
-  if (key->kind == KEY_NAME) return json_string(text);
-  return key->kind == KEY_REAL ? number(strtod(text, NULL)) : json_integer(strtoll(text, NULL, 10));
-}
-
 static void set_identity(json_t *object, const struct fit_row *row) {
-  for (int k = 0; k < FIT_KEYS; k++)
-    set(object, fit_keys[k].name, key_json(&fit_keys[k], row->cell));
+  cell_json_set(object, row->cell);
   set(object, "probe", json_pack("[i, i]", row->probe->x, row->probe->y));
   set(object, "quantity", json_string(quantity_name(row->quantity)));
   set(object, "closed_form", json_boolean(row->closed_form));
@@ -119,8 +112,8 @@ static void print_point(FILE *stream, const struct fit_point *point) {
   // A curve that was fitted, not predicted, to a bias that was not found would only show noise.
   bool known = row->quantity == QUANTITY_VARIANCE || isfinite(row->coefficient_theory) ||
                row->verdict == VERDICT_AGREE || row->verdict == VERDICT_DISAGREE;
-  char buffer[FIT_KEY_SIZE];
-  for (int k = 0; k < FIT_KEYS; k++) print_field(stream, fit_keys[k].text(row->cell, 17, buffer));
+  char buffer[CELL_KEY_SIZE];
+  for (int k = 0; k < CELL_KEYS; k++) print_field(stream, cell_keys[k].text(row->cell, 17, buffer));
   fprintf(stream, "%d,%d,%s,%llu", row->probe->x, row->probe->y, quantity_name(row->quantity),
           (unsigned long long)point->n);
   const double value[] = {point->measured, point->lower, point->upper, point->pooled,
@@ -133,7 +126,7 @@ static void print_point(FILE *stream, const struct fit_point *point) {
 bool fit_write_curves(const struct fit *fit, const char *path, struct problem *problem) {
   struct file_out out;
   if (!file_begin(&out, path, problem)) return false;
-  for (int k = 0; k < FIT_KEYS; k++) fprintf(out.stream, "%s,", fit_keys[k].name);
+  for (int k = 0; k < CELL_KEYS; k++) fprintf(out.stream, "%s,", cell_keys[k].name);
   fputs("x,y,quantity,N,measured,lower,upper,pooled,predicted\n", out.stream);
   for (int p = 0; p < fit->n_points; p++) print_point(out.stream, &fit->point[p]);
   return file_commit(&out, problem);

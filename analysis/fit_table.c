@@ -2,7 +2,7 @@
 #define _POSIX_C_SOURCE 200809L // fileno, isatty
 
 #include "analysis/fit.h"
-#include "analysis/fit_keys.h"
+#include "experiment/cell_keys.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,7 +74,7 @@ static const struct column columns[] = {
     {"rate", false, false, print_rate},          {"95 %", false, false, print_interval},
     {"coeff/theory", false, false, print_ratio}, {"verdict", true, false, print_verdict},
 };
-enum { N_COLUMNS = FIT_KEYS + sizeof columns / sizeof *columns };
+enum { N_COLUMNS = CELL_KEYS + sizeof columns / sizeof *columns };
 
 // How column c is set: keys first, then `columns`.
 struct setting {
@@ -84,8 +84,8 @@ struct setting {
 };
 
 static const char *text_of(const struct fit_row *row, int c, int digits, char buffer[CELL_SIZE]) {
-  if (c < FIT_KEYS) return fit_keys[c].text(row->cell, digits, buffer);
-  columns[c - FIT_KEYS].print(row, buffer);
+  if (c < CELL_KEYS) return cell_keys[c].text(row->cell, digits, buffer);
+  columns[c - CELL_KEYS].print(row, buffer);
   return buffer;
 }
 
@@ -96,18 +96,18 @@ static bool differ(const struct fit_row *row, int c, int digits) {
 
 // What differs from scene to scene needs no column: the scene tells it.
 static bool must_differ(const struct fit_row *row, int c) {
-  bool told_by_scene = c < FIT_KEYS && !fit_keys[c].always;
+  bool told_by_scene = c < CELL_KEYS && !cell_keys[c].always;
   return differ(row, c, 17) &&
          !(told_by_scene && strcmp(row[0].cell->scene, row[1].cell->scene) != 0);
 }
 
 // Where one row must differ from the next, so does what is shown of them: from four digits up.
 static struct setting column_setting(const struct fit *fit, int c) {
-  bool key = c < FIT_KEYS;
-  const struct column *column = key ? NULL : &columns[c - FIT_KEYS];
-  struct setting set = {.head = key ? fit_keys[c].name : column->head,
-                        .left = key ? fit_keys[c].kind == KEY_NAME : column->left,
-                        .shown = key ? fit_keys[c].always : !column->only_varying,
+  bool key = c < CELL_KEYS;
+  const struct column *column = key ? NULL : &columns[c - CELL_KEYS];
+  struct setting set = {.head = key ? cell_keys[c].name : column->head,
+                        .left = key ? cell_keys[c].kind == KEY_NAME : column->left,
+                        .shown = key ? cell_keys[c].always : !column->only_varying,
                         .digits = 4};
   for (int r = 0; r + 1 < fit->n_rows; r++)
     if (must_differ(&fit->row[r], c)) {

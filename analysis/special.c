@@ -9,8 +9,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-double special_normal_upper(double z) { return gsl_cdf_ugaussian_Q(z); }
-
 double special_normal_quantile(double upper) { return gsl_cdf_ugaussian_Qinv(upper); }
 
 double special_two_sided(double z) { return 2 * gsl_cdf_ugaussian_Q(fabs(z)); }

@@ -2,7 +2,6 @@
 #ifndef ANALYSIS_SPECIAL_H
 #define ANALYSIS_SPECIAL_H
 
-double special_normal_upper(double z);        // P(Z > z)
 double special_normal_quantile(double upper); // z with P(Z > z) = upper
 double special_two_sided(double z);           // P(|Z| > |z|)
 double special_chi2_upper(double x, double dof);

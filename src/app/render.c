@@ -2,6 +2,7 @@
 #include "run/render.h"
 #include "app/cli.h"
 #include "base/file.h"
+#include "log/cell_json.h"
 #include "run/interrupt.h"
 
 #include <inttypes.h>
@@ -40,7 +41,7 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   say(&said, cli, "direct", or (file->direct, "photons"));
   say(&said, cli, "depth", arena_format(arena, "%d", file->max_depth));
   say(&said, cli, "pixel", file->centre ? "centre" : "footprint");
-  *cell = (struct cell){.radius = NAN};
+  *cell = (struct cell){.radius = NAN, .runs = 1, .scene = file_base_name(scene->path, arena)};
   return cli_apply(&said, cell, problem) && cli_apply(cli, cell, problem);
 }
 
@@ -69,17 +70,6 @@ static bool output_can_be_written(const char *path, struct problem *problem) {
   return true;
 }
 
-static char *manifest_of(const struct cell *cell, const struct scene *scene, struct arena *arena) {
-  return arena_format(arena,
-                      "{\"scene_hash\": \"%016" PRIx64
-                      "\", \"integrator\": \"%s\", \"kernel\": \"%s\", "
-                      "\"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, \"photons\": %" PRIu64
-                      ", \"iterations\": %" PRIu64 ", \"seed\": \"%016" PRIx64 "\", \"depth\": %d}",
-                      scene->hash, cell->integrator->name, cell->kernel->name, cell->law->name,
-                      cell->alpha, isnan(cell->radius) ? 0 : cell->radius, cell->photons,
-                      cell->iterations, cell->seed, cell->depth);
-}
-
 static int render(struct cli *cli, struct problem *problem) {
   struct scene scene;
   struct cell cell;
@@ -96,7 +86,8 @@ static int render(struct cli *cli, struct problem *problem) {
     fprintf(stderr, "photonlab: interrupted, no picture was written\n");
     return 128 + interrupt_signal();
   }
-  image.manifest = manifest_of(&cell, &scene, cli->arena);
+  char *hash = arena_format(cli->arena, "%016" PRIx64, scene.hash);
+  image.manifest = cell_json_line(&cell, "scene_hash", hash, cli->arena);
   if (!image_write(output, &image, problem)) return 1;
   printf("%s\n", output);
   return 0;

@@ -1,5 +1,5 @@
 // Radius laws: rho(alpha, i) = r_i^d / r_1^d, i = 1, 2, ... (theory 2). A law is one row of the table
-// in law.c; alpha is mentioned nowhere else.
+// in law.c; nothing else knows what alpha does.
 #ifndef DENSITY_LAW_H
 #define DENSITY_LAW_H
 
@@ -9,8 +9,8 @@ struct law {
   const char *name, *formula, *source;
   // Closed form, valid for alpha in [0, 1] and i from 1 to 1e15.
   double (*rho)(double alpha, uint64_t i);
-  // Expected exponents: variance of the average falls as N^-variance_exponent(alpha),
-  // |bias of iteration i| as i^-(2/d) * measure_exponent(alpha), where rho ~ i^-measure_exponent.
+  // e in rho ~ i^-e. The variance of the average then falls as N^-(1 - e), the bias of iteration i as
+  // i^-(2 e / d) (theory 3.2).
   double (*measure_exponent)(double alpha);
 };
 

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/version.h"
+#include "log/cell_json.h"
 #include "log/log.h"
 #include "run/block.h"
 #include "run/picture.h"
@@ -99,21 +100,16 @@ static bool write_images(const struct outputs *outputs, const struct group_plan 
       const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];
       struct image image =
           picture_of(&group->measure, moments + plan_image(group, e, m), moments_variance, &own);
-      image.manifest = arena_format(
-          &own,
-          "{\"cell\": %d, \"scene\": \"%s\", \"integrator\": \"%s\", "
-          "\"kernel\": \"%s\", \"law\": \"%s\", \"alpha\": %.17g, \"radius\": %.17g, "
-          "\"photons\": %" PRIu64 ", \"iterations\": %" PRIu64 ", \"runs\": %" PRIu64 "}",
-          cell->number, cell->scene, cell->integrator->name, cell->kernel->name, cell->law->name,
-          cell->alpha, cell->radius, cell->photons, cell->image[m], cell->runs);
-      char *path = arena_format(&own, "%s/%s-cell%03d-%" PRIu64 ".exr", folder, cell->scene,
-                                cell->number, cell->image[m]);
+      char *n = arena_format(&own, "%" PRIu64, cell->image[m]);
+      image.manifest = cell_json_line(cell, "average_of", n, &own);
+      char *path =
+          arena_format(&own, "%s/%s-cell%03d-%s.exr", folder, cell->scene, cell->number, n);
       if (!image_write(path, &image, problem)) return false;
     }
   return true;
 }
 
-// Rows go by cell, cells by their number, whatever groups they were computed in.
+// Rows go by group (in the order of their first cells), within it by cell.
 static bool write_logs(const struct outputs *outputs, struct arena scratch,
                        struct problem *problem) {
   const struct plan *plan = outputs->plan;
@@ -203,21 +199,9 @@ static json_t *manifest_cell(const struct plan *plan, const struct cell *cell) {
   for (int s = 0; s < plan->n_scenes; s++)
     if (strcmp(plan->scene[s].path, cell->scene_path) == 0) hash = plan->scene[s].scene.hash;
   json_t *out = json_object();
-  json_object_set_new(out, "cell", json_integer(cell->number));
-  json_object_set_new(out, "scene", json_string(cell->scene_path));
+  cell_json_set(out, cell);
+  json_object_set_new(out, "scene_path", json_string(cell->scene_path));
   json_object_set_new(out, "scene_hash", hex(hash));
-  json_object_set_new(out, "integrator", json_string(cell->integrator->name));
-  json_object_set_new(out, "kernel", json_string(cell->kernel->name));
-  json_object_set_new(out, "law", json_string(cell->law->name));
-  json_object_set_new(out, "alpha", json_real(cell->alpha));
-  json_object_set_new(out, "radius", json_real(cell->radius));
-  json_object_set_new(out, "photons", json_integer((json_int_t)cell->photons));
-  json_object_set_new(out, "iterations", json_integer((json_int_t)cell->iterations));
-  json_object_set_new(out, "runs", json_integer((json_int_t)cell->runs));
-  json_object_set_new(out, "seed", hex(cell->seed));
-  json_object_set_new(out, "direct", json_string(cell->direct == DIRECT_NEE ? "nee" : "photons"));
-  json_object_set_new(out, "depth", json_integer(cell->depth));
-  json_object_set_new(out, "pixel", json_string(cell->footprint ? "footprint" : "centre"));
   json_object_set_new(out, "reference", json_string(cell->reference_integrator));
   return out;
 }

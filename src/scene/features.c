@@ -16,8 +16,5 @@ static bool lights_are_gray(const struct scene *scene) {
 
 struct features scene_features(const struct scene *scene) {
   bool gray = shapes_are_gray(scene) && lights_are_gray(scene);
-  return (struct features){.gray = gray,
-                           .n_channels = gray ? 1 : 3,
-                           .n_primitives = scene->n_primitives,
-                           .n_lights = scene->n_lights};
+  return (struct features){.gray = gray, .n_channels = gray ? 1 : 3};
 }

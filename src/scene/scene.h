@@ -130,8 +130,8 @@ struct light_type {
   const char *name, *about; // name as in `LightSource "name"` (area: `AreaLightSource`)
   bool area;                // comes with a shape
   bool delta;               // cannot be hit by a ray: no MIS
-  // Area lights: called when the file is complete, `shape` is the emitter (NULL otherwise).
-  // Fills data and power.
+  // Called when the file is complete; for area lights the builder's `shape` is the emitter. Fills data
+  // and power.
   bool (*read)(struct scene_builder *, struct params *, struct light *);
   // u[LIGHT_U]. The ray's t_max is INFINITY.
   void (*emit)(const struct scene *, const struct light *, const double *u, struct emission *);
@@ -164,7 +164,7 @@ struct camera {
 // of unit length.
 struct ray camera_ray(const struct camera *, double x, double y);
 
-// What the file asks for; the command line and experiments override it.
+// What the file asks `render` for; the command line overrides it, experiments do not look.
 struct scene_settings {
   const char *filename;    // Film
   const char *integrator;  // Integrator, NULL if none
@@ -210,7 +210,6 @@ static inline const struct material *scene_material(const struct scene *scene,
 struct features {
   bool gray;             // every spectrum has equal channels: one is carried instead of three
   int n_channels;        // 1 if gray, else 3
-  uint32_t n_primitives, n_lights;
 };
 struct features scene_features(const struct scene *);
 

@@ -1,5 +1,5 @@
 // Every random dimension has a name. Numbers come in pairs (numeric/rng.h); a path's pairs are
-// numbered from its start: the first few once a path, then PAIRS_PER_BOUNCE a vertex.
+// numbered from its start: the first few once a path, then PAIRS_PER_VERTEX a vertex.
 #ifndef WALK_DIMENSION_H
 #define WALK_DIMENSION_H
 

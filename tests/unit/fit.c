@@ -1,8 +1,8 @@
 // What the fit writes: JSON another program can read, a table a person can read, a CSV for the
 // figure; and how verdicts are put together.
 #define _GNU_SOURCE // mkdtemp
-#include "analysis/fit_keys.h"
 #include "base/file.h"
+#include "experiment/cell_keys.h"
 #include "tests/statistical/fit_synthetic.h"
 
 #include <setjmp.h>
@@ -85,32 +85,32 @@ static const struct key top_keys[] = {{"experiment", STRING},
                                       {"verdict", STRING},
                                       {"cells", LIST},
                                       END};
-static const struct key cell_keys[] = {{"cell", COUNT},
-                                       {"scene", STRING},
-                                       {"probe", PAIR},
-                                       {"integrator", STRING},
-                                       {"kernel", STRING},
-                                       {"law", STRING},
-                                       {"alpha", NUMBER},
-                                       {"radius", NUMBER},
-                                       {"photons", COUNT},
-                                       {"iterations", COUNT},
-                                       {"runs", COUNT},
-                                       {"seed", STRING},
-                                       {"direct", STRING},
-                                       {"depth", COUNT},
-                                       {"pixel", STRING},
-                                       {"quantity", STRING},
-                                       {"rate_theory", NUMBER},
-                                       {"rate", NUMBER},
-                                       {"rate_se", NUMBER},
-                                       {"rate_ci95", PAIR},
-                                       {"coefficient_theory", NUMBER},
-                                       {"coefficient", NUMBER},
-                                       {"coefficient_se", NUMBER},
-                                       {"tests", LIST},
-                                       {"verdict", STRING},
-                                       END};
+static const struct key row_keys[] = {{"cell", COUNT},
+                                      {"scene", STRING},
+                                      {"probe", PAIR},
+                                      {"integrator", STRING},
+                                      {"kernel", STRING},
+                                      {"law", STRING},
+                                      {"alpha", NUMBER},
+                                      {"radius", NUMBER},
+                                      {"photons", COUNT},
+                                      {"iterations", COUNT},
+                                      {"runs", COUNT},
+                                      {"seed", STRING},
+                                      {"direct", STRING},
+                                      {"depth", COUNT},
+                                      {"pixel", STRING},
+                                      {"quantity", STRING},
+                                      {"rate_theory", NUMBER},
+                                      {"rate", NUMBER},
+                                      {"rate_se", NUMBER},
+                                      {"rate_ci95", PAIR},
+                                      {"coefficient_theory", NUMBER},
+                                      {"coefficient", NUMBER},
+                                      {"coefficient_se", NUMBER},
+                                      {"tests", LIST},
+                                      {"verdict", STRING},
+                                      END};
 // What the fit adds of its own.
 static const struct key added_keys[] = {{"closed_form", TRUTH}, {"first_iteration", COUNT}, END};
 static const struct key bias_keys[] = {
@@ -155,7 +155,7 @@ static void assert_one_of(json_t *value, const char *const *names, int n) {
 static void check_row(json_t *row) {
   json_t *quantity = json_object_get(row, "quantity"), *test;
   bool bias = strcmp(json_string_value(quantity), "bias") == 0;
-  size_t index, keys = check_keys(row, cell_keys) + check_keys(row, added_keys);
+  size_t index, keys = check_keys(row, row_keys) + check_keys(row, added_keys);
   if (bias) keys += check_keys(row, bias_keys);
   assert_int_equal(json_object_size(row), keys);
   assert_one_of(quantity, (const char *[]){"variance", "bias"}, 2);
@@ -252,9 +252,9 @@ static void test_curves(void **state) {
   struct fit fit = synthetic_fit(&base, 1, &arena);
   const char *text = written(&fit, fit_write_curves);
   assert_int_equal(count_lines(text), 1 + 4);
-  for (int k = 0; k < FIT_KEYS; k++) { // the first columns, in this order
-    size_t length = strlen(fit_keys[k].name);
-    assert_memory_equal(text, fit_keys[k].name, length);
+  for (int k = 0; k < CELL_KEYS; k++) { // the first columns, in this order
+    size_t length = strlen(cell_keys[k].name);
+    assert_memory_equal(text, cell_keys[k].name, length);
     assert_int_equal(text[length], ',');
     text += length + 1;
   }
@@ -368,8 +368,8 @@ static int count_words(const char *line) {
 static void test_table_tells_cells_apart(void **state) {
   (void)state;
   struct fit fit = synthetic_fit(&base, 1, &arena);
-  struct cell cell = *fit.row[0].cell, other[FIT_KEYS];
-  for (int k = 0; k < FIT_KEYS; k++) other[k] = cell;
+  struct cell cell = *fit.row[0].cell, other[CELL_KEYS];
+  for (int k = 0; k < CELL_KEYS; k++) other[k] = cell;
   struct integrator_type integrator = *cell.integrator;
   integrator.name = "another";
   int k = 0;
@@ -378,19 +378,20 @@ static void test_table_tells_cells_apart(void **state) {
   other[k++].alpha = 0.66667, other[k++].radius = 1.0000005, other[k++].photons++;
   other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
   other[k++].depth++, other[k++].footprint = true;
-  assert_int_equal(k, FIT_KEYS);
+  assert_int_equal(k, CELL_KEYS);
   fit.row[1] = fit.row[0];
   char *same = table_of(&fit);
-  for (k = 0; k < FIT_KEYS; k++) {
+  for (k = 0; k < CELL_KEYS; k++) {
     assert_non_null(other[k].law);
     fit.row[1].cell = &other[k];
     char *text = table_of(&fit), *first = strchr(text, '\n') + 1, *second = strchr(first, '\n') + 1;
-    assert_non_null(strstr(text, fit_keys[k].name));
-    assert_int_equal(count_words(text), count_words(same) + !fit_keys[k].always);
+    assert_non_null(strstr(text, cell_keys[k].name));
+    assert_int_equal(count_words(text), count_words(same) + !cell_keys[k].always);
     assert_memory_not_equal(first, second, (size_t)(second - first));
-    for (int c = 0; c < FIT_KEYS; c++) {
-      char one[FIT_KEY_SIZE], two[FIT_KEY_SIZE];
-      bool differ = strcmp(fit_keys[c].text(&cell, 17, one), fit_keys[c].text(&other[k], 17, two));
+    for (int c = 0; c < CELL_KEYS; c++) {
+      char one[CELL_KEY_SIZE], two[CELL_KEY_SIZE];
+      bool differ =
+          strcmp(cell_keys[c].text(&cell, 17, one), cell_keys[c].text(&other[k], 17, two));
       assert_int_equal(differ, c == k);
     }
     free(text);

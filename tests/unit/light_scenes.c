@@ -126,7 +126,7 @@ static void test_gray(void **state) {
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     struct scene scene = read_scene(names[i]);
     struct features features = scene_features(&scene);
-    assert_true(features.gray && features.n_lights == 1);
+    assert_true(features.gray && scene.n_lights == 1);
     double power = scene.light[0].power[0];
     if (strncmp(names[i], "plane", 5) == 0 && !strstr(names[i], "isotropic"))
       assert_true(fabs(power - 1) < 1e-15);

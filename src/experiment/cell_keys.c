@@ -1,15 +1,15 @@
-#include "analysis/fit_keys.h"
+#include "experiment/cell_keys.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
 static const char *count(uint64_t n, char *buffer) {
-  snprintf(buffer, FIT_KEY_SIZE, "%" PRIu64, n);
+  snprintf(buffer, CELL_KEY_SIZE, "%" PRIu64, n);
   return buffer;
 }
 
 static const char *real(double x, int digits, char *buffer) {
-  snprintf(buffer, FIT_KEY_SIZE, "%.*g", digits, x);
+  snprintf(buffer, CELL_KEY_SIZE, "%.*g", digits, x);
   return buffer;
 }
 
@@ -36,11 +36,11 @@ KEY(pixel, cell->footprint ? "footprint" : "centre")
 // As in manifest.json: JSON's numbers do not hold 64 bits everywhere.
 static const char *key_seed(const struct cell *cell, int digits, char *buffer) {
   (void)digits;
-  snprintf(buffer, FIT_KEY_SIZE, "%016" PRIx64, cell->seed);
+  snprintf(buffer, CELL_KEY_SIZE, "%016" PRIx64, cell->seed);
   return buffer;
 }
 
-const struct fit_key fit_keys[FIT_KEYS] = {
+const struct cell_key cell_keys[CELL_KEYS] = {
     {"cell", KEY_COUNT, false, key_cell},
     {"scene", KEY_NAME, true, key_scene},
     {"integrator", KEY_NAME, false, key_integrator},
