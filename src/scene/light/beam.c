@@ -100,7 +100,6 @@ static void read_across(struct scene_builder *builder, struct params *params, st
   struct vec v = across ? vec(across[0], across[1], across[2]) : vec(1, 0, 0);
   v = transform_direction(&builder->world_from_object, v);
   struct vec y = vec_cross(beam->axis, v);
-  // What is left across a direction within a millionth of the axis is rounding of the file's digits.
   if (!(vec_length(y) > 1e-6 * vec_length(v)))
     params_complain(params, "across", "\"across\" must not be parallel to the beam");
   beam->y = vec_normalize(y);
