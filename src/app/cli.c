@@ -9,29 +9,63 @@
 #include <stdlib.h>
 #include <string.h>
 
-// An option either sets a key of an experiment (`key`), or is one of the few that do not.
+// An option sets a key of an experiment, or is taken by a function of its own.
 struct option {
   const char *name, *value, *key, *about;
+  bool (*take)(struct cli *, const char *text, struct problem *);
 };
 
+static bool take_output(struct cli *cli, const char *text, struct problem *problem) {
+  (void)problem;
+  cli->output = text;
+  return true;
+}
+
+static bool take_quality(struct cli *cli, const char *text, struct problem *problem) {
+  (void)problem;
+  cli->quality = text;
+  return true;
+}
+
+static bool take_quiet(struct cli *cli, const char *text, struct problem *problem) {
+  (void)text, (void)problem;
+  cli->options.quiet = true;
+  return true;
+}
+
+static bool take_no_skip(struct cli *cli, const char *text, struct problem *problem) {
+  return skip_read(text, &cli->options.skip_off, problem);
+}
+
+static bool take_threads(struct cli *cli, const char *text, struct problem *problem) {
+  char *end;
+  long threads = strtol(text, &end, 10);
+  if (end == text || *end || threads < 1 || threads > 4096)
+    return problem_set(problem, "--threads: '%s' is not a number of threads", text);
+  cli->options.threads = (int)threads;
+  return true;
+}
+
 static const struct option options[] = {
-    {"output", "PATH", NULL, "where the results go (also -o)"},
-    {"threads", "N", NULL, "threads; default all cores; any number gives the same bits"},
-    {"quiet", NULL, NULL, "no progress"},
-    {"no-skip", "NAMES", NULL, "do not skip: all, or names of 'photonlab list skips'"},
-    {"quality", "NAME", NULL, "default or paper"},
-    {"seed", "SEED", "seed", "a number, or a name that is hashed"},
-    {"integrator", "NAME", "integrator", "see 'photonlab list integrators'"},
-    {"iterations", "N", "iterations", "how many iterations are averaged"},
-    {"spp", "N", "iterations", "samples a pixel: the same as --iterations"},
-    {"photons", "N", "photons", "emitted paths per iteration"},
-    {"radius", "R", "radius", "kernel support of iteration 1, scene units"},
-    {"alpha", "A", "alpha", "fraction kept, in [0, 1]; a number or a ratio"},
-    {"kernel", "NAME", "kernel", "see 'photonlab list kernels'"},
-    {"law", "NAME", "law", "see 'photonlab list laws'"},
-    {"direct", "HOW", "direct", "direct light by photons or nee (next-event estimation)"},
-    {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt"},
-    {"pixel", "WHERE", "pixel", "centre or footprint"},
+    {"output", "PATH", NULL, "where the results go (also -o)", take_output},
+    {"threads", "N", NULL, "threads; default all cores; any number gives the same bits",
+     take_threads},
+    {"quiet", NULL, NULL, "no progress", take_quiet},
+    {"no-skip", "NAMES", NULL, "do not skip: all, or names of 'photonlab list skips'",
+     take_no_skip},
+    {"quality", "NAME", NULL, "default or paper", take_quality},
+    {"seed", "SEED", "seed", "a number, or a name that is hashed", NULL},
+    {"integrator", "NAME", "integrator", "see 'photonlab list integrators'", NULL},
+    {"iterations", "N", "iterations", "how many iterations are averaged", NULL},
+    {"spp", "N", "iterations", "samples a pixel: the same as --iterations", NULL},
+    {"photons", "N", "photons", "emitted paths per iteration", NULL},
+    {"radius", "R", "radius", "kernel support of iteration 1, scene units", NULL},
+    {"alpha", "A", "alpha", "fraction kept, in [0, 1]; a number or a ratio", NULL},
+    {"kernel", "NAME", "kernel", "see 'photonlab list kernels'", NULL},
+    {"law", "NAME", "law", "see 'photonlab list laws'", NULL},
+    {"direct", "HOW", "direct", "direct light by photons or nee (next-event estimation)", NULL},
+    {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt", NULL},
+    {"pixel", "WHERE", "pixel", "centre or footprint", NULL},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
@@ -94,28 +128,12 @@ static const struct option *option_find(const char *name, size_t length) {
   return NULL;
 }
 
-static bool read_threads(const char *text, struct cli *cli, struct problem *problem) {
-  char *end;
-  long threads = strtol(text, &end, 10);
-  if (end == text || *end || threads < 1 || threads > 4096)
-    return problem_set(problem, "--threads: '%s' is not a number of threads", text);
-  cli->options.threads = (int)threads;
-  return true;
-}
-
 static bool take(const struct option *option, const char *text, struct cli *cli,
                  struct problem *problem) {
-  if (option->key) {
-    if (cli->n_settings == CLI_MAX_SETTINGS) return problem_set(problem, "too many options");
-    char *name = arena_format(cli->arena, "--%s", option->name);
-    cli->setting[cli->n_settings++] = (struct cli_setting){name, option->key, text};
-    return true;
-  }
-  if (strcmp(option->name, "output") == 0) cli->output = text;
-  if (strcmp(option->name, "quality") == 0) cli->quality = text;
-  if (strcmp(option->name, "quiet") == 0) cli->options.quiet = true;
-  if (strcmp(option->name, "no-skip") == 0) return skip_read(text, &cli->options.skip_off, problem);
-  if (strcmp(option->name, "threads") == 0) return read_threads(text, cli, problem);
+  if (option->take) return option->take(cli, text, problem);
+  if (cli->n_settings == CLI_MAX_SETTINGS) return problem_set(problem, "too many options");
+  char *name = arena_format(cli->arena, "--%s", option->name);
+  cli->setting[cli->n_settings++] = (struct cli_setting){name, option->key, text};
   return true;
 }
 

@@ -35,7 +35,7 @@ bool render_image(const struct integrator_type *integrator, const struct measure
   if ((uint64_t)round > iterations) round = (int)iterations;
   long size = (long)measure->n_points * measure->features.n_channels;
   struct moments *moments = arena_new(arena, struct moments, size);
-  double *frames = arena_new(arena, double, size *round);
+  double *frames = arena_new(arena, double, round *size);
   struct moments_tree tree = moments_tree_new(size, arena);
   void **state = arena_new(arena, void *, threads);
   struct arena *own = arena_new(arena, struct arena, threads),

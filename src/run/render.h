@@ -6,10 +6,9 @@
 #include "image/image.h"
 #include "run/plan.h"
 
-// `measure` covers the film, one estimator. R, G, B: the mean over `iterations`; variance.*: of
-// that mean, from the differences between iterations (for a progressive radius: an upper bound's
-// indication only, since iterations differ in law). The same bits for any number of threads.
-// False: interrupted, nothing made.
+// `measure` covers the film, one estimator. R, G, B: the mean over `iterations`. variance.*: of
+// that mean, from the differences between iterations, so with a shrinking radius too large by what
+// their biases differ. The same bits for any number of threads. False: interrupted, nothing made.
 bool render_image(const struct integrator_type *, const struct measurement *, uint64_t iterations,
                   struct run_options, struct arena *, struct image *);
 
