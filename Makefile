@@ -115,6 +115,8 @@ $(gen)/slots.c: FORCE | $(gen)
 	$(call slot_table,shape,src/scene/shape); \
 	$(call slot_table,light,src/scene/light); \
 	$(call slot_table,material,src/scene/material); \
+	$(call slot_table,texture,src/scene/texture); \
+	$(call slot_table,camera,src/scene/camera); \
 	$(call slot_table,integrator,src/integrator); \
 	echo "$$integrator_find"; } >$@.new; $(keep)
 

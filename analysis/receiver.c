@@ -65,7 +65,8 @@ bool receiver_is_plane(const struct scene *scene, struct vec p, struct vec n, ui
     const struct shape *shape = &scene->shape[s];
     const struct material *material = &scene->material[shape->material];
     bool emitter = shape->light == light;
-    if (emitter && (direct_only || material->type->is_black(material))) continue;
+    bool black = material->type->is_black && material->type->is_black(material);
+    if (emitter && (direct_only || black)) continue;
     if (!shape_in_plane(scene, shape, &plane)) return false;
   }
   return true;

@@ -18,20 +18,21 @@ static void gather_reserve(struct gather *gather, int64_t count, int n_channels,
     gather->value[c] = arena_new(arena, double, gather->capacity);
 }
 
-// Keeps the photons on the eye's side, with f * flux of each.
-static int weigh(struct gather *gather, const struct scene *scene, const struct photons *photons,
-                 const struct eye_point *point, int found) {
-  const struct material *material = scene_material(scene, &point->surface);
+// Keeps the photons that the point scatters, with f * flux of each, of paths of at most `depth`
+// scatterings.
+static int weigh(struct gather *gather, const struct photons *photons,
+                 const struct eye_point *point, int depth, int found) {
   int kept = 0;
   for (int j = 0; j < found; j++) {
     uint32_t photon = gather->photon[j];
+    if (photons->vertex[photon] + point->vertex >= depth) continue;
     struct vec wi = photons->wi[photon];
-    if (!(vec_dot(wi, point->n) > 0)) continue;
-    double f[3];
-    material->type->value(material, &point->surface, point->wo, wi, f);
+    double f[3], factor = bsdf_photon_factor(&point->bsdf, wi);
+    bsdf_value(&point->bsdf, point->wo, wi, TRANSPORT_RADIANCE, f);
+    if (f[0] == 0 && f[1] == 0 && f[2] == 0) continue;
     gather->distance2[kept] = gather->distance2[j];
     for (int c = 0; c < photons->n_channels; c++)
-      gather->value[c][kept] = f[c] * photons->flux[c][photon];
+      gather->value[c][kept] = f[c] * factor * photons->flux[c][photon];
     kept++;
   }
   return kept;
@@ -55,12 +56,12 @@ static double weighted_sum(const double *weight, const double *value, int n) {
   return sum_lanes(lane);
 }
 
-void gather_point(struct gather *gather, const struct scene *scene, const struct photons *photons,
-                  const struct grid *grid, const struct eye_point *point, const struct disc *disc,
-                  int n_discs, double *out, long stride, struct arena *arena) {
+void gather_point(struct gather *gather, const struct photons *photons, const struct grid *grid,
+                  const struct eye_point *point, int depth, const struct disc *disc, int n_discs,
+                  double *out, long stride, struct arena *arena) {
   gather_reserve(gather, grid->count, photons->n_channels, arena);
-  int found = grid_find(grid, point->surface.p, gather->photon, gather->distance2);
-  int n = weigh(gather, scene, photons, point, found);
+  int found = grid_find(grid, point->p, gather->photon, gather->distance2);
+  int n = weigh(gather, photons, point, depth, found);
   if (n == 0) return;
   for (int e = 0; e < n_discs; e++) {
     evaluate(gather, &disc[e], n);

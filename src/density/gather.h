@@ -1,7 +1,9 @@
 // The density estimate at eye points, for all estimators of a group at once (theory 1.1):
 //   L_r(x) = 1/n_emitted * sum over photons p of k_r(x_p - x) f(wo, wi_p) flux_p.
-// A photon counts iff it is within the 3D distance r and arrived on the side of the hit's geometric
-// normal from which the eye looks; no other test.
+// A photon counts iff it is within the 3D distance r and the BSDF value at the eye point scatters its
+// direction: from the side of the eye where only reflection is, from the other where light is
+// transmitted. No other test. Where the shading normal is not the geometric one, the flux is
+// corrected (bsdf_photon_factor), so that the limit is what an eye path measures.
 #ifndef DENSITY_GATHER_H
 #define DENSITY_GATHER_H
 
@@ -26,8 +28,9 @@ struct gather {
 
 // Adds to out[disc * stride + c] the radiance towards the eye at `point`. The grid's r is at least
 // every disc's. Sums have the shape of numeric/sum.h over the photons found within the grid's r.
-void gather_point(struct gather *, const struct scene *, const struct photons *,
-                  const struct grid *, const struct eye_point *, const struct disc *, int n_discs,
+// depth: pbrt's maxdepth of the whole path.
+void gather_point(struct gather *, const struct photons *, const struct grid *,
+                  const struct eye_point *, int depth, const struct disc *, int n_discs,
                   double *out, long stride, struct arena *);
 
 #endif

@@ -12,14 +12,12 @@ struct path {
   const struct measurement *measure;
   struct walk *walk;
   uint64_t run;
-  struct connection *connection;
 };
 
 static void *path_new(const struct measurement *measure, struct arena *arena) {
   struct path *state = arena_new(arena, struct path, 1);
   state->measure = measure;
-  state->walk = walk_new(measure->scene, measure->bvh, measure->features.n_channels, arena);
-  state->connection = arena_new(arena, struct connection, WALK_BATCH);
+  state->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
   return state;
 }
 
@@ -28,45 +26,74 @@ static void path_begin(void *data, uint64_t run) {
   state->run = run;
 }
 
-// Emission met by path j: all of it where next-event estimation could not have found it.
-static void add_emission(struct path *state, int j, const struct surface *surface, double *frame) {
-  struct walk *walk = state->walk;
-  if (walk->scene->shape[surface->shape].light == LIGHT_NONE) return;
-  double emitted[3], weight = 1;
-  eye_emitted(walk->scene, surface, vec_scale(walk->ray[j].d, -1), emitted);
-  if (walk->vertex > 0)
-    weight = connect_mis_weight(walk->scene, surface, walk->ray[j].o, walk->ray[j].d, walk->pdf[j]);
+// Adds weight * throughput * rgb to the pixel of path j.
+static void add(const struct walk *walk, int j, double weight, const double rgb[3],
+                double *frame) {
   for (int c = 0; c < walk->n_channels; c++)
-    frame[walk->owner[j] * walk->n_channels + c] += weight * walk->throughput[c][j] * emitted[c];
+    frame[walk->owner[j] * walk->n_channels + c] += weight * walk->throughput[c][j] * rgb[c];
 }
 
-static struct connection connection_of(const struct walk *walk, int j, const struct surface *at) {
-  struct connection connection = {.surface = *at,
+// Emission met by path j: all of it where next-event estimation could not have found it.
+static void add_emission(const struct walk *walk, int j, const struct surface *surface,
+                         double *frame) {
+  if (walk->scene->shape[surface->shape].light == LIGHT_NONE) return;
+  double emitted[3], weight = 1;
+  struct vec d = walk->ray[j].d;
+  eye_emitted(walk->scene, surface, vec_scale(d, -1), emitted);
+  if (walk->pdf[j] > 0)
+    weight = connect_mis_weight(walk->scene, surface, walk->from[j], d, walk->pdf[j]);
+  add(walk, j, weight, emitted, frame);
+}
+
+// What the paths that hit nothing see.
+static void add_background(const struct walk *walk, double *frame) {
+  const struct scene *scene = walk->scene;
+  for (int j = 0; j < walk->n; j++) {
+    if (walk->hit[j].primitive != PRIMITIVE_NONE) continue;
+    for (uint32_t k = 0; k < scene->n_infinite; k++) {
+      const struct light *light = &scene->light[scene->infinite[k]];
+      struct vec d = walk->ray[j].d;
+      double rgb[3], weight = 1;
+      light->type->background(scene, light, d, rgb);
+      if (walk->pdf[j] > 0)
+        weight = connect_mis_weight_background(scene, light, walk->from[j], d, walk->pdf[j]);
+      add(walk, j, weight, rgb, frame);
+    }
+  }
+}
+
+static void connect(struct walk *walk, int j, const struct surface *at, const struct bsdf *bsdf) {
+  struct connection connection = {.bsdf = bsdf,
+                                  .p = at->p,
+                                  .primitive = at->primitive,
                                   .wo = vec_scale(walk->ray[j].d, -1),
-                                  .owner = walk->owner[j],
-                                  .path = walk->path[j]};
+                                  .owner = walk->owner[j]};
+  if (bsdf_delta_probability(bsdf, connection.wo, TRANSPORT_RADIANCE) >= 1) return;
   for (int c = 0; c < walk->n_channels; c++) connection.weight[c] = walk->throughput[c][j];
-  return connection;
+  double u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
+  connect_add(walk, &connection, walk->u[2][0][j], u, true);
 }
 
 // At every hit: add what it emits, connect it to a light, scatter.
-static void meet(struct path *state, double *frame) {
-  struct walk *walk = state->walk;
-  bool last = walk->vertex >= state->measure->depth;
-  int n = walk->n, alive = 0, connections = 0;
+static void meet(struct walk *walk, int depth, double *frame) {
+  bool last = walk->vertex >= depth;
+  int alive = 0;
   if (!last) {
-    walk_random(walk, 0, pair_of_vertex(walk->vertex, VERTEX_DIRECTION));
-    walk_random(walk, 1, pair_of_vertex(walk->vertex, VERTEX_CHOICE));
+    walk_vertex_random(walk);
+    walk_random(walk, 2, pair_of_vertex(walk->vertex, VERTEX_LIGHT));
+    walk_random(walk, 3, pair_of_vertex(walk->vertex, VERTEX_EMITTER));
   }
-  for (int j = 0; j < n; j++) {
+  connect_begin(walk);
+  for (int j = 0; j < walk->n; j++) {
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    add_emission(state, j, &surface, frame);
-    const struct material *material = scene_material(walk->scene, &surface);
-    if (last || material->type->is_black(material)) continue;
-    state->connection[connections++] = connection_of(walk, j, &surface);
-    if (walk_scatter(walk, j, &surface)) walk_move(walk, alive++, j);
+    add_emission(walk, j, &surface, frame);
+    if (last) continue;
+    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+    if (!bsdf.type) continue;
+    connect(walk, j, &surface, &bsdf);
+    if (walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
-  connect_lights(walk, state->connection, connections, walk->vertex, true, frame);
+  connect_finish(walk, frame);
   walk->n = alive;
 }
 
@@ -95,11 +122,13 @@ static void path_step(void *data, uint64_t i, double *frame) {
   for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
     int n = measure->n_points - first < WALK_BATCH ? measure->n_points - first : WALK_BATCH;
     for (int j = 0; j < n; j++) walk->path[j] = path_number(measure, first + j);
-    eye_rays(walk, &measure->scene->camera, measure->pixel + first, n, measure->footprint);
+    eye_rays(walk, measure->pixel + first, n, measure->footprint);
     double *out = frame + (long)first * walk->n_channels;
     for (walk->vertex = 0; walk->n > 0 && walk->vertex <= measure->depth; walk->vertex++) {
       walk_trace(walk);
-      meet(state, out);
+      if (walk->features.background) add_background(walk, out);
+      walk_drop_escaped(walk);
+      meet(walk, measure->depth, out);
     }
   }
   copy_to_others(measure, size, frame);

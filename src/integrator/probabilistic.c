@@ -5,6 +5,7 @@
 
 #include "density/gather.h"
 #include "walk/connect.h"
+#include "walk/dimension.h"
 #include "walk/eye.h"
 #include "walk/photons.h"
 
@@ -26,23 +27,21 @@ struct probabilistic {
   struct grid_seen seen;
   struct vec seen_point[FEW_POINTS];
   struct disc *disc;
-  struct connection *connection; // next-event estimation only
-  double *direct;
+  double *direct; // next-event estimation only
 };
 
 static void *probabilistic_new(const struct measurement *measure, struct arena *arena) {
   struct probabilistic *state = arena_new(arena, struct probabilistic, 1);
   state->measure = measure;
   state->arena = arena;
-  state->walk = walk_new(measure->scene, measure->bvh, measure->features.n_channels, arena);
+  state->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
   state->point = arena_new(arena, struct eye_point, measure->n_points);
   state->disc = arena_new(arena, struct disc, measure->n_estimators);
-  state->points_are_fixed = !measure->footprint && !(measure->skip_off & SKIP_STATIC_EYE);
-  if (measure->nee) {
-    state->connection = arena_new(arena, struct connection, WALK_BATCH);
+  state->points_are_fixed = !measure->footprint && !measure->features.random_eye &&
+                            !(measure->skip_off & SKIP_STATIC_EYE);
+  if (measure->nee)
     state->direct =
         arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
-  }
   return state;
 }
 
@@ -55,8 +54,8 @@ static void trace_eye(struct probabilistic *state) {
   const struct measurement *measure = state->measure;
   if (state->points_are_fixed && state->points_are_traced) return;
   state->walk->key = rng_key(measure->seed, state->run, RNG_EYE);
-  eye_trace(state->walk, &measure->scene->camera, measure->pixel, measure->n_points,
-            measure->footprint, state->point);
+  eye_trace(state->walk, measure->pixel, measure->n_points, measure->footprint, measure->depth,
+            state->point);
   state->points_are_traced = true;
 }
 
@@ -81,7 +80,7 @@ static void trace_photons(struct probabilistic *state, double r) {
   if (few) {
     int n = 0;
     for (int j = 0; j < measure->n_points; j++)
-      if (state->point[j].hit) state->seen_point[n++] = state->point[j].surface.p;
+      if (state->point[j].hit) state->seen_point[n++] = state->point[j].p;
     grid_seen_mark(&state->seen, state->seen_point, n, r);
   }
   state->walk->key = rng_key(measure->seed, state->run, RNG_PHOTONS);
@@ -95,39 +94,52 @@ static void gather(struct probabilistic *state, double *frame) {
   long stride = (long)measure->n_points * n_channels;
   for (int j = 0; j < measure->n_points; j++) {
     const struct eye_point *point = &state->point[j];
-    if (!point->hit) continue;
     double *out = frame + (long)j * n_channels;
-    gather_point(&state->gather, measure->scene, &state->photons, &state->grid, point, state->disc,
-                 measure->n_estimators, out, stride, state->arena);
+    if (point->bsdf.type)
+      gather_point(&state->gather, &state->photons, &state->grid, point, measure->depth,
+                   state->disc, measure->n_estimators, out, stride, state->arena);
     for (int e = 0; e < measure->n_estimators; e++)
       for (int c = 0; c < n_channels; c++) out[e * stride + c] += point->emitted[c];
   }
+}
+
+// Light samples of points first..first + n - 1; the eye pass drew nothing from these pairs.
+static void connect_points(struct probabilistic *state, int first, int n) {
+  const struct measurement *measure = state->measure;
+  struct walk *walk = state->walk;
+  walk->n = n;
+  for (int j = 0; j < n; j++)
+    walk->path[j] = eye_path(&walk->scene->camera, measure->pixel[first + j]);
+  walk_random(walk, 2, pair_of_vertex(0, VERTEX_LIGHT));
+  walk_random(walk, 3, pair_of_vertex(0, VERTEX_EMITTER));
+  connect_begin(walk);
+  for (int j = 0; j < n; j++) {
+    const struct eye_point *point = &state->point[first + j];
+    if (!point->bsdf.type || point->vertex >= measure->depth) continue;
+    struct connection connection = {.bsdf = &point->bsdf,
+                                    .p = point->p,
+                                    .primitive = point->primitive,
+                                    .wo = point->wo,
+                                    .owner = first + j};
+    memcpy(connection.weight, point->weight, sizeof connection.weight);
+    double u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
+    connect_add(walk, &connection, walk->u[2][0][j], u, false);
+  }
+  connect_finish(walk, state->direct);
 }
 
 // Direct light by next-event estimation, the same for all estimators.
 static void add_direct(struct probabilistic *state, double *frame) {
   const struct measurement *measure = state->measure;
   long stride = (long)measure->n_points * measure->features.n_channels;
-  struct connection *connection = state->connection;
-  double *direct = state->direct;
-  memset(direct, 0, (size_t)stride * sizeof *direct);
+  memset(state->direct, 0, (size_t)stride * sizeof *state->direct);
   state->walk->key = rng_key(measure->seed, state->run, RNG_EYE);
   for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
-    int n = 0;
-    for (int j = first; j < measure->n_points && j < first + WALK_BATCH; j++) {
-      const struct eye_point *point = &state->point[j];
-      if (!point->hit) continue;
-      connection[n] =
-          (struct connection){.surface = point->surface,
-                              .wo = point->wo,
-                              .owner = j,
-                              .path = eye_path(&measure->scene->camera, measure->pixel[j])};
-      memcpy(connection[n++].weight, point->weight, sizeof point->weight);
-    }
-    connect_lights(state->walk, connection, n, 0, false, direct);
+    int left = measure->n_points - first;
+    connect_points(state, first, left < WALK_BATCH ? left : WALK_BATCH);
   }
   for (int e = 0; e < measure->n_estimators; e++)
-    for (long k = 0; k < stride; k++) frame[e * stride + k] += direct[k];
+    for (long k = 0; k < stride; k++) frame[e * stride + k] += state->direct[k];
 }
 
 static void probabilistic_step(void *data, uint64_t i, double *frame) {

@@ -77,6 +77,14 @@ const double *params_array(struct params *params, const char *type, const char *
   return param ? param->number : NULL;
 }
 
+const struct param *params_any(struct params *params, const char *name) {
+  note_asked(params, name);
+  struct param *param = find(params, name);
+  if (!param || params->problem->text[0]) return NULL;
+  param->taken = true;
+  return param;
+}
+
 bool params_complain(struct params *params, const char *name, const char *format, ...) {
   char text[sizeof params->problem->text];
   va_list args;

@@ -43,6 +43,8 @@ struct vec params_point3(struct params *, const char *name, struct vec fallback)
 bool params_rgb(struct params *, const char *name, double rgb[3]); // false: absent, rgb untouched
 // An array of numbers of `type` ("point3", "integer", ...), NULL if absent; *count in numbers.
 const double *params_array(struct params *, const char *type, const char *name, ptrdiff_t *count);
+// The parameter of any type, taken; NULL if absent.
+const struct param *params_any(struct params *, const char *name);
 // A reader's own complaint about a value it took (place of that parameter, else of the directive).
 bool params_complain(struct params *, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

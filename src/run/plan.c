@@ -240,20 +240,21 @@ bool plan_make(const struct experiment *experiment, struct run_options options, 
 
 void plan_probes(const struct group_plan *plan, struct probe *probe, struct arena scratch) {
   const struct scene *scene = &plan->loaded->scene;
-  struct walk *walk = walk_new(scene, plan->loaded->bvh, 3, &scratch);
+  struct features features = scene_features(scene);
+  features.n_channels = 3;
+  struct walk *walk = walk_new(scene, plan->loaded->bvh, features, &scratch);
   for (int p = 0; p < plan->n_probes; p++) {
     struct eye_point point;
-    eye_trace(walk, &scene->camera, &plan->probe_pixel[p], 1, false, &point);
+    eye_trace(walk, &plan->probe_pixel[p], 1, false, INT_MAX, &point);
     probe[p] = (struct probe){.x = plan->probe_pixel[p].x,
                               .y = plan->probe_pixel[p].y,
                               .hit = point.hit,
                               .reference = NAN,
                               .reference_se = NAN};
     if (!point.hit) continue;
-    probe[p].p = point.surface.p;
-    probe[p].n = point.n;
-    const struct material *material = scene_material(scene, &point.surface);
-    material->type->value(material, &point.surface, point.wo, point.n, probe[p].scale_rgb);
+    probe[p].p = point.p;
+    probe[p].n = eye_normal(&point);
+    bsdf_value(&point.bsdf, point.wo, probe[p].n, TRANSPORT_RADIANCE, probe[p].scale_rgb);
     probe[p].scale = luminance(probe[p].scale_rgb, 3);
     probe[p].emitted = luminance(point.emitted, 3);
   }

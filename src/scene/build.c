@@ -24,6 +24,8 @@ uint32_t build_begin_shape(struct scene_builder *builder, const struct shape_typ
   scene->shape = build_grow(builder->arena, scene->shape, scene->n_shapes, 1, sizeof *scene->shape);
   scene->shape[scene->n_shapes] = (struct shape){.type = type,
                                                  .first = scene->n_primitives,
+                                                 .normal = ROW_NONE,
+                                                 .uv = ROW_NONE,
                                                  .material = material,
                                                  .light = LIGHT_NONE,
                                                  .flip = flip};
@@ -85,6 +87,7 @@ bool scene_add_triangles(struct scene_builder *builder, struct params *params,
   if (!add_rows(builder, params, index, n_triangles, n_vertices)) return false;
   struct shape *shape = current_shape(scene);
   shape->local = scene->n_triangles;
+  shape->vertex = scene->n_positions;
   shape->count = n_triangles;
   scene->n_positions += n_vertices;
   scene->n_triangles += n_triangles;
@@ -115,12 +118,21 @@ bool scene_add_quadric(struct scene_builder *builder, struct params *params,
   return box_is_finite(&box) || params_complain(params, "radius", "it does not fit into floats");
 }
 
+// Details cost time at every hit: only where somebody reads them. A light that does says so itself.
+static void finish_shape(struct scene *scene, struct shape *shape) {
+  const struct material *material = &scene->material[shape->material];
+  shape->see_through = shape->alpha || material->type->passed;
+  shape->detailed =
+      shape->normal != ROW_NONE || shape->alpha || (material->needs & MATERIAL_DETAIL);
+}
+
 static void fill_tables(struct scene_builder *builder) {
   struct scene *scene = builder->scene;
   scene->shape_of = arena_new(builder->arena, uint32_t, scene->n_primitives);
   scene->bounds = box_empty();
   for (uint32_t s = 0; s < scene->n_shapes; s++) {
-    const struct shape *shape = &scene->shape[s];
+    struct shape *shape = &scene->shape[s];
+    finish_shape(scene, shape);
     for (uint32_t k = shape->first; k < shape->first + shape->count; k++) {
       scene->shape_of[k] = s;
       scene->bounds = box_union(scene->bounds, shape->type->bounds(scene, shape, k));
@@ -179,11 +191,19 @@ static bool choose_lights(struct reader *reader) {
   return true;
 }
 
+static bool list_infinite(struct reader *reader) {
+  struct scene *scene = reader->builder.scene;
+  scene->infinite = arena_new(reader->builder.arena, uint32_t, scene->n_lights);
+  for (uint32_t k = 0; k < scene->n_lights; k++)
+    if (scene->light[k].type->background) scene->infinite[scene->n_infinite++] = k;
+  return true;
+}
+
 bool scene_finish(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
   if (!read_finish_options(reader)) return false;
   if (scene->n_primitives == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
   fill_tables(&reader->builder);
-  return read_lights(reader) && choose_lights(reader);
+  return read_lights(reader) && choose_lights(reader) && list_infinite(reader);
 }

@@ -4,7 +4,8 @@
 
 #include "scene/scene.h"
 
-// Fills half_x and half_y from fov, width and height: fov spans the shorter axis.
+// Fills the window when camera and film are known: the shorter axis spans [-1, 1] times the type's
+// scale.
 void camera_set_window(struct camera *);
 
 #endif

@@ -3,7 +3,7 @@
 static bool shapes_are_gray(const struct scene *scene) {
   for (uint32_t i = 0; i < scene->n_shapes; i++) {
     const struct material *material = &scene->material[scene->shape[i].material];
-    if (!material->type->is_gray(material)) return false;
+    if (!material->type->is_gray(scene, material)) return false;
   }
   return true;
 }
@@ -14,7 +14,32 @@ static bool lights_are_gray(const struct scene *scene) {
   return true;
 }
 
+// Bits of enum material_needs that any shape's material has.
+static unsigned material_needs(const struct scene *scene) {
+  unsigned needs = 0;
+  for (uint32_t i = 0; i < scene->n_shapes; i++)
+    needs |= scene->material[scene->shape[i].material].needs;
+  return needs;
+}
+
+static bool any_see_through(const struct scene *scene) {
+  for (uint32_t i = 0; i < scene->n_shapes; i++)
+    if (scene->shape[i].see_through) return true;
+  return false;
+}
+
 struct features scene_features(const struct scene *scene) {
   bool gray = shapes_are_gray(scene) && lights_are_gray(scene);
-  return (struct features){.gray = gray, .n_channels = gray ? 1 : 3};
+  unsigned needs = material_needs(scene);
+  struct features features = {
+      .gray = gray,
+      .n_channels = gray ? 1 : 3,
+      .random_materials = needs & MATERIAL_RANDOM,
+      .see_through = any_see_through(scene),
+      .motion = scene->n_motions > 0 || scene->camera.moves,
+      .background = scene->n_infinite > 0,
+  };
+  features.random_eye = features.motion || features.see_through ||
+                        needs & (MATERIAL_RANDOM | MATERIAL_DELTA) || scene->camera.lens_radius > 0;
+  return features;
 }

@@ -9,8 +9,8 @@ enum { MAX_ROWS = 32 };
 
 static void print_camera(const struct scene *scene, FILE *out) {
   const struct camera *camera = &scene->camera;
-  struct ray axis = camera_ray(camera, camera->width / 2.0, camera->height / 2.0);
-  fprintf(out, "camera       perspective, fov %g degrees (shorter axis)\n", camera->fov);
+  struct ray axis = camera_ray(camera, camera->width / 2.0, camera->height / 2.0, NULL);
+  fprintf(out, "camera       %s, fov %g degrees (shorter axis)\n", camera->type->name, camera->fov);
   fprintf(out, "  eye        %g %g %g\n", axis.o.x, axis.o.y, axis.o.z);
   fprintf(out, "  towards    %g %g %g\n", axis.d.x, axis.d.y, axis.d.z);
   const char *filename = scene->settings.filename;
@@ -71,8 +71,8 @@ static void print_materials(const struct scene *scene, FILE *out) {
       const struct material *material = &scene->material[scene->shape[k].material];
       if (material->type != *type) continue;
       shapes++;
-      black += material->type->is_black(material);
-      coloured += !material->type->is_gray(material);
+      black += material->type->is_black && material->type->is_black(material);
+      coloured += !material->type->is_gray(scene, material);
     }
     if (shapes)
       fprintf(out, "  %-12s on %" PRIu32 " shapes: %" PRIu32 " black, %" PRIu32 " coloured\n",

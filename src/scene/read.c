@@ -175,12 +175,13 @@ static bool read_directives(struct reader *reader, struct arena scratch) {
   return true;
 }
 
-bool scene_read_text(const char *path, struct text text, struct arena *arena, struct arena lists,
-                     struct arena scratch, struct scene *scene, struct problem *problem) {
+bool scene_read_text(const char *path, const char *folder, struct text text, struct arena *arena,
+                     struct arena lists, struct arena scratch, struct scene *scene,
+                     struct problem *problem) {
   *scene = (struct scene){.path = arena_string(arena, path, (ptrdiff_t)strlen(path)),
                           .hash = XXH64(text.data, (size_t)text.length, 0)};
   struct reader reader = {.lexer = lexer_begin(scene->path, text, problem),
-                          .builder = {.arena = arena, .scene = scene},
+                          .builder = {.arena = arena, .scene = scene, .folder = folder},
                           .problem = problem,
                           .lists = lists,
                           .now = {.world_from_object = transform_identity()}};
@@ -189,12 +190,18 @@ bool scene_read_text(const char *path, struct text text, struct arena *arena, st
   return read_directives(&reader, scratch) && scene_finish(&reader);
 }
 
+// "scenes/box.pbrt" -> "scenes/", "box.pbrt" -> "".
+static const char *folder_of(const char *path, struct arena *arena) {
+  const char *slash = strrchr(path, '/');
+  return arena_string(arena, path, slash ? slash + 1 - path : 0);
+}
+
 bool scene_read(const char *path, struct arena *arena, struct scene *scene,
                 struct problem *problem) {
   struct arena own = arena_reserve(), scratch = arena_reserve(), lists = own;
   struct text text;
   bool ok = file_read(path, &lists, &text, problem) &&
-            scene_read_text(path, text, arena, lists, scratch, scene, problem);
+            scene_read_text(path, folder_of(path, arena), text, arena, lists, scratch, scene, problem);
   arena_release(scratch);
   arena_release(own);
   return ok;

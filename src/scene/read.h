@@ -2,15 +2,40 @@
 #ifndef SCENE_READ_H
 #define SCENE_READ_H
 
+#include "base/file.h"
 #include "scene/scene.h"
+
+struct named_texture {
+  const char *name;
+  struct texture texture;
+};
+
+struct named_material {
+  const char *name;
+  uint32_t material; // row of scene.material
+};
 
 struct scene_builder {
   struct arena *arena;
   struct scene *scene;                // under construction; complete (with bounds) when lights are read
   struct transform world_from_object; // the current transformation at the directive
+  struct transform world_from_object_end; // at the end of the motion
+  bool moves;                         // the two differ
   bool reverse_orientation;           // at the directive
   bool emits;                         // shapes: an area light comes with this one
-  const struct shape *shape;          // area lights: the emitter; NULL otherwise
+  bool textured;                      // set by input_read_*: a texture was taken
+  const char *folder;                 // of the file being read, to which others are relative; NULL:
+                                      // no other file may be read
+  struct shape *shape;                // area lights: the emitter (a light that reads its uv sets
+                                      // `detailed`); NULL otherwise
+  struct named_textures {
+    struct named_texture *item;
+    ptrdiff_t count, capacity;
+  } float_textures, spectrum_textures; // by Texture directives so far
+  struct {
+    struct named_material *item;
+    ptrdiff_t count, capacity;
+  } materials; // by MakeNamedMaterial directives so far
 };
 
 // For shapes: append world-space vertices (rounded here, once, to float; a non-finite one is a
@@ -19,5 +44,16 @@ struct scene_builder {
 bool scene_add_triangles(struct scene_builder *, struct params *, const double (*vertex)[3],
                          uint32_t n_vertices, const double *index, uint32_t n_triangles);
 bool scene_add_quadric(struct scene_builder *, struct params *, const struct quadric *);
+
+// For meshes and images: the bytes of a file named by parameter `name`, relative to the folder of the
+// scene file, in the arena; they count in scene.hash.
+bool scene_read_file(struct scene_builder *, struct params *, const char *name,
+                     const char *filename, struct arena *, struct text *);
+
+// A spectrum texture or float texture named so far, NULL if none.
+const struct texture *scene_find_texture(const struct scene_builder *, bool spectrum,
+                                         const char *name);
+// A material named so far: its row, ROW_NONE if none.
+uint32_t scene_find_material(const struct scene_builder *, const char *name);
 
 #endif

@@ -26,10 +26,22 @@ static bool wrong_type(struct reader *reader, const struct call *call, const cha
                     call->name, call->type, advice);
 }
 
+static const struct camera_type *find_camera(const char *name) {
+  for (int k = 0; camera_types[k]; k++)
+    if (!strcmp(camera_types[k]->name, name)) return camera_types[k];
+  return NULL;
+}
+
 void read_default_options(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
-  scene->camera = (struct camera){
-      .world_from_camera = transform_identity(), .fov = 90, .width = 1280, .height = 720};
+  scene->camera = (struct camera){.type = find_camera("perspective"),
+                                  .world_from_camera = transform_identity(),
+                                  .fov = 90,
+                                  .width = 1280,
+                                  .height = 720,
+                                  .full_width = 1280,
+                                  .full_height = 720};
+  scene->filter = (struct filter){.type = filter_find("box"), .radius = {0.5, 0.5}};
   scene->settings = (struct scene_settings){
       .filename = NULL, .max_depth = 5, .spp = 16, .radius = NAN, .alpha = NAN, .seed = -1};
   reader->sampler_seed = -1;
@@ -45,11 +57,9 @@ bool read_camera(struct reader *reader, struct call *call) {
   struct params *params = &call->params;
   struct camera *camera = &reader->builder.scene->camera;
   if (!only_once(reader, call, &reader->camera)) return false;
-  if (strcmp(call->type, "perspective") != 0)
-    return wrong_type(reader, call, "use \"perspective\"");
-  camera->fov = params_float(params, "fov", 90);
-  if (!(camera->fov > 0 && camera->fov < 180))
-    params_complain(params, "fov", "fov must be between 0 and 180 degrees");
+  camera->type = find_camera(call->type);
+  if (!camera->type) return wrong_type(reader, call, "use \"perspective\"");
+  if (!camera->type->read(camera, params)) return false;
   only_default(params, "lensradius", 0);
   only_default(params, "shutteropen", 0);
   only_default(params, "shutterclose", 1);
@@ -80,6 +90,8 @@ bool read_film(struct reader *reader, struct call *call) {
   if (strcmp(call->type, "rgb") != 0) return wrong_type(reader, call, "use \"rgb\"");
   scene->camera.width = read_resolution(params, "xresolution", 1280);
   scene->camera.height = read_resolution(params, "yresolution", 720);
+  scene->camera.full_width = scene->camera.width;
+  scene->camera.full_height = scene->camera.height;
   scene->settings.filename = params_string(params, "filename", NULL);
   params_bool(params, "savefp16", true); // how pbrt stores; we always store 32 bits
   return params_finish(params);

@@ -94,9 +94,11 @@ static void add_material(struct reader *reader, struct material material) {
 bool read_material(struct reader *reader, struct call *call) {
   struct material material = {.type = find_material(reader, call)};
   if (!material.type) return false;
-  if (!material.type->read(&call->params, reader->builder.arena, &material) ||
-      !params_finish(&call->params))
+  struct scene_builder *builder = &reader->builder;
+  builder->textured = false;
+  if (!material.type->read(builder, &call->params, &material) || !params_finish(&call->params))
     return false;
+  if (builder->textured) material.needs |= MATERIAL_DETAIL;
   add_material(reader, material);
   return true;
 }
@@ -106,7 +108,7 @@ void read_default_material(struct reader *reader) {
   extern const struct material_type material_diffuse;
   struct params none = {.directive = "the default material", .problem = reader->problem};
   struct material material = {.type = &material_diffuse};
-  material.type->read(&none, reader->builder.arena, &material);
+  material.type->read(&reader->builder, &none, &material);
   add_material(reader, material);
 }
 

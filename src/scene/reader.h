@@ -104,9 +104,10 @@ void read_default_options(struct reader *);
 bool read_finish_options(struct reader *);
 void read_default_material(struct reader *);
 
-// scene_read on the file's text; `lists` and `scratch` are free again when it returns.
-bool scene_read_text(const char *path, struct text, struct arena *, struct arena lists,
-                     struct arena scratch, struct scene *, struct problem *);
+// scene_read on the file's text; `folder` (ending in /, or empty) is where the files it names are,
+// NULL: it may name none. `lists` and `scratch` are free again when it returns.
+bool scene_read_text(const char *path, const char *folder, struct text, struct arena *,
+                     struct arena lists, struct arena scratch, struct scene *, struct problem *);
 
 // Tables and lights, when every directive has been read.
 bool scene_finish(struct reader *);

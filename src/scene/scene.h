@@ -1,20 +1,24 @@
 // A scene as the integrators see it: plain arrays, world space, linear sRGB.
-// Shapes, lights and materials are slots: one file each in shape/, light/, material/, whose last
-// definition is its row (`const struct light_type light_point = {...}`); the build collects the rows
-// from the file names, so adding one touches nothing else.
+// Shapes, lights, materials, textures and cameras are slots: one file each in shape/, light/,
+// material/, texture/, camera/, whose last definition is its row (`const struct light_type
+// light_point = {...}`); the build collects the rows from the file names, so adding one touches
+// nothing else.
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
 #include "base/arena.h"
 #include "base/problem.h"
 #include "pbrt/params.h"
+#include "scene/bsdf.h"
 #include "scene/ray.h"
+#include "scene/texture.h"
 #include "scene/transform.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #define LIGHT_NONE UINT32_MAX
+#define ROW_NONE UINT32_MAX
 
 struct scene;
 
@@ -22,12 +26,15 @@ struct box {
   float lo[3], hi[3]; // closed; rounded outward when made from doubles
 };
 
-// What was hit.
+// What was hit. Of shapes that are not `detailed`, ns = ng, and dpdu and uv are zero.
 struct surface {
   struct vec p;  // o + t d
   struct vec ng; // geometric normal, unit length, on the side pbrt gives it
   uint32_t primitive;
   uint32_t shape;
+  struct vec ns;   // shading normal, unit length; ng is on its side where the shape has normals
+  struct vec dpdu; // of any length; zero: no direction across ns is special
+  double uv[2];
 };
 
 // ---- shapes ----
@@ -35,18 +42,32 @@ struct surface {
 // in the order of the file. Flat = triangle or disk: a ray that leaves one cannot hit it again.
 struct shape {
   const struct shape_type *type;
-  uint32_t first, count;       // global primitive numbers
-  uint32_t local;              // triangles: first row of scene.triangle; quadrics: of scene.quadric
-  uint32_t material, light;    // rows of scene.material, scene.light (or LIGHT_NONE)
-  bool flip;                   // geometric normal reversed (ReverseOrientation xor mirrored matrix)
+  uint32_t first, count;      // global primitive numbers
+  uint32_t local;             // first row of scene.triangle, scene.patch or scene.quadric
+  uint32_t vertex;            // meshes: first row of scene.position
+  uint32_t normal, uv;        // meshes: rows of scene.normal, scene.uv of the first vertex, or ROW_NONE
+  uint32_t material, light;   // rows of scene.material, scene.light (or LIGHT_NONE)
+  const struct input *alpha;  // opacity, NULL: opaque
+  bool flip;                  // geometric normal reversed (ReverseOrientation xor mirrored matrix)
+  bool detailed;              // somebody wants ns, dpdu, uv
+  bool see_through;           // a ray may pass: alpha, or a material that is an interface
 };
 
-// Sphere and disk, partial sweeps as in pbrt-v4. The world transform has no limits but invertible.
+// Sphere, disk and cylinder, partial sweeps as in pbrt-v4. The world transform has no limits but
+// invertible.
 struct quadric {
   struct transform world_from_object, object_from_world;
-  double radius, z_min, z_max; // sphere
+  double radius, z_min, z_max; // sphere, cylinder
   double height, inner_radius; // disk
   double phi_max;              // radians
+};
+
+// A shape that moves: world from object is interpolated between start and end as pbrt's
+// AnimatedTransform does, and scene.position, normal or quadric hold it at one time.
+struct motion {
+  uint32_t shape;
+  struct transform start, end;
+  float (*position)[3], (*normal)[3]; // meshes: in object space, or NULL
 };
 
 struct scene_builder; // the reader's state while a file is read (scene/read.h)
@@ -61,6 +82,9 @@ struct shape_type {
   // Fills *t if the ray hits within (0, t_max); scalar reference of what the BVH does.
   bool (*intersect)(const struct scene *, const struct shape *, uint32_t primitive,
                     const struct ray *, double *t);
+  // Fills ns, dpdu and uv of a surface whose other fields are set, and may turn ng to the side of
+  // ns (pbrt's rule for meshes with normals). Called where shape.detailed.
+  void (*detail)(const struct scene *, const struct shape *, struct surface *);
   // Geometric normal at p on the primitive, unit length, flip applied.
   struct vec (*normal)(const struct scene *, const struct shape *, uint32_t primitive, struct vec p);
   double (*area)(const struct scene *, const struct shape *, uint32_t primitive);
@@ -70,30 +94,28 @@ struct shape_type {
 };
 
 // ---- materials ----
-struct bsdf_sample {
-  struct vec wi;
-  double weight[3]; // f |cos| / pdf
-  double pdf_solid_angle;
-};
-
 struct material {
   const struct material_type *type;
   const void *data; // the type's own
+  unsigned needs;   // bits of enum material_needs; `read` sets them (input_read_* sets MATERIAL_DETAIL)
 };
 
-// Directions point away from the surface and are of unit length. wo: where the path came from.
+enum material_needs {
+  MATERIAL_DETAIL = 1, // reads uv, dpdu or a texture
+  MATERIAL_RANDOM = 2, // reads bsdf.u: its value is random
+  MATERIAL_DELTA = 4,  // may have delta lobes
+};
+
 struct material_type {
   const char *name, *about;
-  bool (*read)(struct params *, struct arena *, struct material *);
-  // f(wo, wi) in 1/sr per channel; zero where the material does not scatter.
-  void (*value)(const struct material *, const struct surface *, struct vec wo, struct vec wi,
-                double f[3]);
-  double (*pdf)(const struct material *, const struct surface *, struct vec wo, struct vec wi);
-  // False: absorbed (nothing to sample). u: two numbers for the direction, one for a component.
-  bool (*sample)(const struct material *, const struct surface *, struct vec wo, const double u[3],
-                 struct bsdf_sample *);
-  bool (*is_gray)(const struct material *);
-  bool (*is_black)(const struct material *); // scatters nothing
+  bool passed; // rays pass without scattering (interface); bsdf is never called
+  bool (*read)(struct scene_builder *, struct params *, struct material *);
+  // The scattering at a surface, textures looked up: type, data and x of a bsdf whose frame and u
+  // are set (surface_bsdf). Leaves type NULL where nothing is scattered.
+  void (*bsdf)(const struct scene *, const struct material *, const struct surface *,
+               struct bsdf *);
+  bool (*is_gray)(const struct scene *, const struct material *);
+  bool (*is_black)(const struct material *); // scatters nothing anywhere; NULL: it scatters
 };
 
 // ---- lights ----
@@ -137,11 +159,15 @@ struct light_type {
   void (*emit)(const struct scene *, const struct light *, const double *u, struct emission *);
   bool (*sample)(const struct scene *, const struct light *, struct vec p, const double u[2],
                  struct light_sample *); // false: contributes nothing here
+  // Solid angle at p of having sampled this surface point (infinite lights: this direction, surface
+  // NULL); 0 for delta.
   double (*pdf)(const struct scene *, const struct light *, struct vec p, const struct surface *,
-                struct vec wi); // solid angle at p of having sampled this surface point; 0 for delta
+                struct vec wi);
   // Radiance leaving the emitter's surface towards w (area lights), else NULL.
   void (*radiance)(const struct scene *, const struct light *, const struct surface *, struct vec w,
                    double rgb[3]);
+  // Radiance that arrives from direction d where nothing is hit (infinite lights), else NULL.
+  void (*background)(const struct scene *, const struct light *, struct vec d, double rgb[3]);
   // NULL if there is no closed form. Exact (theory 5); the statistics compare measurements with it.
   bool (*closed_form)(const struct scene *, const struct light *, struct vec p, struct vec n,
                       struct light_closed_form *);
@@ -150,19 +176,49 @@ struct light_type {
 
 // ---- camera and film ----
 struct pixel {
-  int x, y; // from the top left, from 0
+  int x, y; // from the top left of the image, from 0
 };
 
 struct camera {
+  const struct camera_type *type;
   struct transform world_from_camera;
-  double fov;            // degrees, shorter axis
-  int width, height;     // pixels
-  double half_x, half_y; // of the image plane at z = 1, camera space
+  struct transform start, end;        // of world_from_camera, where it moves
+  bool moves;
+  int width, height;                  // of the image, pixels
+  int full_width, full_height;        // of the film it is cut from
+  int crop_x, crop_y;                 // where the image's top left pixel is on the film
+  double window[4];                   // x0 x1 y0 y1 of the film at z = 1 (orthographic: anywhere), camera space
+  double fov;                         // degrees, shorter axis
+  double lens_radius, focal_distance; // 0: a pinhole
+  double shutter_open, shutter_close;
 };
 
-// The ray through continuous pixel coordinates (0.5, 0.5 is the centre of the top left pixel). d is
-// of unit length.
-struct ray camera_ray(const struct camera *, double x, double y);
+struct camera_type {
+  const char *name, *about;
+  bool (*read)(struct camera *, struct params *); // what is the type's own (fov)
+  double (*window_scale)(const struct camera *);  // of the screen window, to give `window`
+  // The ray in camera space through (x, y) of the window, before the lens; d need not be of unit
+  // length.
+  struct ray (*ray)(const struct camera *, double x, double y);
+};
+
+// The ray through continuous pixel coordinates of the image (0.5, 0.5 is the centre of the top left
+// pixel) and a point of the lens, u[2] uniform (NULL: its centre). d is of unit length.
+struct ray camera_ray(const struct camera *, double x, double y, const double u[2]);
+
+// How the positions of a pixel's samples are distributed around its centre; their weight is 1.
+struct filter {
+  const struct filter_type *type;
+  double radius[2], sigma; // pixels
+};
+
+struct filter_type {
+  const char *name, *about;
+  bool (*read)(struct filter *, struct params *);
+  void (*sample)(const struct filter *, const double u[2], double offset[2]); // from the centre
+};
+const struct filter_type *filter_find(const char *name); // scene/filter.c
+extern const struct filter_type *const filter_types[];   // NULL-terminated
 
 // What the file asks `render` for; the command line overrides it, experiments do not look.
 struct scene_settings {
@@ -180,19 +236,27 @@ struct scene {
   const char *path;
   uint64_t hash; // xxh64 over the bytes of every file read, in order
   struct camera camera;
+  struct filter filter;
   struct scene_settings settings;
 
   float (*position)[3];    // vertices in world space, rounded once to float
+  float (*normal)[3];      // shading normals in world space, unit length; of the meshes that have them
+  float (*uv)[2];
   uint32_t (*triangle)[3]; // rows of position
+  uint32_t (*patch)[4];    // rows of position: p00, p10, p01, p11
   struct quadric *quadric;
   struct shape *shape;
   uint32_t *shape_of;      // by primitive
   struct material *material;
   struct light *light;
   double *light_cdf;       // [n_lights + 1], cumulative `probability`
-  uint32_t n_positions, n_triangles, n_quadrics, n_shapes, n_primitives, n_materials, n_lights;
+  uint32_t *infinite;      // rows of light with a background
+  struct motion *motion;
+  double motion_time[2];   // TransformTimes
+  uint32_t n_positions, n_normals, n_uvs, n_triangles, n_patches, n_quadrics, n_shapes, n_primitives,
+      n_materials, n_lights, n_infinite, n_motions;
 
-  struct box bounds;       // of all primitives
+  struct box bounds;       // of all primitives, at all times
 };
 
 // Reads a pbrt-v4 file (the subset of README) and everything in it.
@@ -206,10 +270,23 @@ static inline const struct material *scene_material(const struct scene *scene,
   return &scene->material[scene->shape[surface->shape].material];
 }
 
-// What the scene does not need (design 6), decided once.
+// The scattering at a surface; u: a uniform random number of this vertex (for MATERIAL_RANDOM).
+// type is NULL where nothing is scattered.
+struct bsdf surface_bsdf(const struct scene *, const struct surface *, double u);
+
+// How much of what arrives is stopped: alpha in [0, 1]; 0 of an interface.
+double surface_opacity(const struct scene *, const struct surface *);
+
+// What the scene needs; what it does not is skipped (design 6). Decided once.
 struct features {
   bool gray;             // every spectrum has equal channels: one is carried instead of three
   int n_channels;        // 1 if gray, else 3
+  bool random_materials; // some material reads bsdf.u
+  bool random_eye;       // a pixel's centre does not always see the same: lens, motion, delta lobes,
+                         // alpha, random materials
+  bool see_through;      // some shape lets rays pass
+  bool motion;
+  bool background;       // some light is infinite
 };
 struct features scene_features(const struct scene *);
 
@@ -217,5 +294,7 @@ struct features scene_features(const struct scene *);
 extern const struct shape_type *const shape_types[];
 extern const struct light_type *const light_types[];
 extern const struct material_type *const material_types[];
+extern const struct texture_type *const texture_types[];
+extern const struct camera_type *const camera_types[];
 
 #endif

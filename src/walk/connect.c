@@ -1,23 +1,25 @@
 #include "walk/connect.h"
 
-#include "walk/dimension.h"
 #include "walk/light.h"
 
+// The light's share in the balance heuristic.
+static double light_share(const struct connection *from, const struct light *light,
+                          const struct light_sample *sample) {
+  double by_light = sample->pdf_solid_angle * light->probability;
+  double by_material = bsdf_pdf(from->bsdf, from->wo, sample->wi, TRANSPORT_RADIANCE);
+  return by_light / (by_light + by_material);
+}
+
 // One light sample; false if it contributes nothing. value[c] is without visibility.
-static bool sample_light(const struct walk *walk, const struct connection *from,
-                         const double u_light, const double u[2], bool mis,
-                         struct light_sample *sample, double value[3]) {
+static bool sample_light(const struct walk *walk, const struct connection *from, double u_light,
+                         const double u[2], bool mis, struct light_sample *sample,
+                         double value[3]) {
   const struct scene *scene = walk->scene;
   const struct light *light = light_choose(scene, u_light);
-  if (!light->type->sample(scene, light, from->surface.p, u, sample)) return false;
-  const struct material *material = scene_material(scene, &from->surface);
-  double f[3], cosine = fabs(vec_dot(sample->wi, from->surface.ng)), weight = 1;
-  material->type->value(material, &from->surface, from->wo, sample->wi, f);
-  if (mis && !light->type->delta) {
-    double by_light = sample->pdf_solid_angle * light->probability;
-    double by_material = material->type->pdf(material, &from->surface, from->wo, sample->wi);
-    weight = by_light / (by_light + by_material);
-  }
+  if (!light->type->sample(scene, light, from->p, u, sample)) return false;
+  double f[3], cosine = fabs(vec_dot(sample->wi, from->bsdf->n));
+  bsdf_value(from->bsdf, from->wo, sample->wi, TRANSPORT_RADIANCE, f);
+  double weight = mis && !light->type->delta ? light_share(from, light, sample) : 1;
   bool any = false;
   for (int c = 0; c < walk->n_channels; c++) {
     value[c] = from->weight[c] * f[c] * cosine * sample->radiance_over_pdf[c] / light->probability *
@@ -25,6 +27,24 @@ static bool sample_light(const struct walk *walk, const struct connection *from,
     any = any || value[c] != 0;
   }
   return any;
+}
+
+void connect_begin(struct walk *walk) { walk->shadow.n = 0; }
+
+void connect_add(struct walk *walk, const struct connection *from, double u_light,
+                 const double u[2], bool mis) {
+  struct light_sample sample;
+  double value[3];
+  if (walk->scene->n_lights == 0) return;
+  if (!sample_light(walk, from, u_light, u, mis, &sample, value)) return;
+  struct shadow *shadow = &walk->shadow;
+  int k = shadow->n++;
+  // Rounding may put the emitter a little before or behind the distance: search to the end.
+  shadow->ray[k] = (struct ray){from->p, sample.wi, INFINITY, from->primitive};
+  shadow->distance[k] = sample.distance;
+  shadow->emitter[k] = sample.primitive;
+  shadow->owner[k] = from->owner;
+  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] = value[c];
 }
 
 // A shadow ray sees the sampled point iff nothing is hit before it. The emitter itself ends the
@@ -42,53 +62,58 @@ static bool sees(const struct scene *scene, const struct ray *ray, struct hit hi
   return (vec_dot(ng_hit, ray->d) < 0) == (vec_dot(ng_there, ray->d) < 0);
 }
 
-static void random_pairs(struct walk *walk, const struct connection *from, int n, int vertex) {
-  for (int j = 0; j < n; j++) walk->shadow.path[j] = from[j].path;
-  for (int k = 0; k < 2; k++)
-    rng_fill(walk->key, walk->iteration, walk->shadow.path, n,
-             pair_of_vertex(vertex, k == 0 ? VERTEX_LIGHT : VERTEX_EMITTER), walk->u[2 + k][0],
-             walk->u[2 + k][1]);
+static void move_shadow(struct walk *walk, int to, int from) {
+  struct shadow *shadow = &walk->shadow;
+  shadow->ray[to] = shadow->ray[from];
+  shadow->distance[to] = shadow->distance[from];
+  shadow->emitter[to] = shadow->emitter[from];
+  shadow->owner[to] = shadow->owner[from];
+  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][to] = shadow->value[c][from];
 }
 
-// Light samples that may contribute, packed into the shadow batch.
-static int shadow_rays(struct walk *walk, const struct connection *from, int n, bool mis) {
+// A see-through surface before the light: attenuates shadow ray k and sends it on. False: opaque
+// here.
+static bool pass(struct walk *walk, int k) {
   struct shadow *shadow = &walk->shadow;
-  int rays = 0;
-  for (int j = 0; j < n; j++) {
-    struct light_sample sample;
-    double value[3], u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
-    if (!sample_light(walk, &from[j], walk->u[2][0][j], u, mis, &sample, value)) continue;
-    // Rounding may put the emitter a little before or behind the distance: search to the end.
-    shadow->ray[rays] =
-        (struct ray){from[j].surface.p, sample.wi, INFINITY, from[j].surface.primitive};
-    shadow->distance[rays] = sample.distance;
-    shadow->emitter[rays] = sample.primitive;
-    shadow->owner[rays] = from[j].owner;
-    for (int c = 0; c < walk->n_channels; c++) shadow->value[c][rays] = value[c];
-    rays++;
-  }
-  return rays;
+  if (!walk_meets_see_through(walk->scene, shadow->hit[k])) return false;
+  struct surface surface = scene_surface(walk->scene, &shadow->ray[k], shadow->hit[k]);
+  double passed = 1 - surface_opacity(walk->scene, &surface);
+  if (!(passed > 0)) return false;
+  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] *= passed;
+  shadow->distance[k] -= shadow->hit[k].t;
+  shadow->ray[k] = walk_ray_beyond(&surface, &shadow->ray[k]);
+  return true;
 }
 
-void connect_lights(struct walk *walk, const struct connection *from, int n, int vertex, bool mis,
-                    double *sum) {
-  if (walk->scene->n_lights == 0) return;
+void connect_finish(struct walk *walk, double *sum) {
   struct shadow *shadow = &walk->shadow;
-  random_pairs(walk, from, n, vertex);
-  int rays = shadow_rays(walk, from, n, mis);
-  bvh_closest(walk->bvh, shadow->ray, shadow->hit, rays);
-  for (int j = 0; j < rays; j++) {
-    if (!sees(walk->scene, &shadow->ray[j], shadow->hit[j], shadow->distance[j],
-              shadow->emitter[j]))
-      continue;
-    for (int c = 0; c < walk->n_channels; c++)
-      sum[shadow->owner[j] * walk->n_channels + c] += shadow->value[c][j];
+  while (shadow->n > 0) {
+    bvh_closest(walk->bvh, shadow->ray, shadow->hit, shadow->n);
+    int left = 0;
+    for (int k = 0; k < shadow->n; k++) {
+      if (sees(walk->scene, &shadow->ray[k], shadow->hit[k], shadow->distance[k],
+               shadow->emitter[k])) {
+        for (int c = 0; c < walk->n_channels; c++)
+          sum[shadow->owner[k] * walk->n_channels + c] += shadow->value[c][k];
+      } else if (walk->features.see_through && pass(walk, k)) {
+        move_shadow(walk, left++, k);
+      }
+    }
+    shadow->n = left;
   }
+}
+
+static double material_share(const struct light *light, double by_light, double pdf) {
+  return pdf / (pdf + by_light * light->probability);
 }
 
 double connect_mis_weight(const struct scene *scene, const struct surface *emitter, struct vec p,
                           struct vec wi, double pdf) {
   const struct light *light = &scene->light[scene->shape[emitter->shape].light];
-  double by_light = light->type->pdf(scene, light, p, emitter, wi) * light->probability;
-  return pdf / (pdf + by_light);
+  return material_share(light, light->type->pdf(scene, light, p, emitter, wi), pdf);
+}
+
+double connect_mis_weight_background(const struct scene *scene, const struct light *light,
+                                     struct vec p, struct vec wi, double pdf) {
+  return material_share(light, light->type->pdf(scene, light, p, NULL, wi), pdf);
 }

@@ -1,4 +1,5 @@
-// Next-event estimation for a batch: one light sample a path, one shadow ray each.
+// Next-event estimation for a batch: one light sample a point, one shadow ray each.
+// Usage: connect_begin, connect_add for each point, connect_finish.
 #ifndef WALK_CONNECT_H
 #define WALK_CONNECT_H
 
@@ -6,22 +7,31 @@
 
 // A point that asks for direct light.
 struct connection {
-  struct surface surface;
-  struct vec wo;    // towards the eye, unit length
-  double weight[3]; // what the radiance scattered towards wo is multiplied with
+  const struct bsdf *bsdf;
+  struct vec p;
+  uint32_t primitive; // p is on it
+  struct vec wo;      // towards the eye, unit length
+  double weight[3];   // what the radiance scattered towards wo is multiplied with
   int owner;
-  uint64_t path;
 };
 
-// For each of n <= WALK_BATCH connections: value = weight * f * cos * L / pdf, unoccluded, added to
-// sum[owner * n_channels + c]. With `mis`, weighted by the balance heuristic against the material's
-// own sampling (lights that no ray can hit keep their full weight). Random numbers: the pairs
-// VERTEX_LIGHT and VERTEX_EMITTER of `vertex`.
-void connect_lights(struct walk *, const struct connection *, int n, int vertex, bool mis,
-                    double *sum);
+void connect_begin(struct walk *);
+
+// value = weight * f * cos * L / pdf. With `mis`, weighted by the balance heuristic against the
+// material's own sampling (lights that no ray can hit keep their full weight). u_light chooses the
+// light, u the point on it. At most WALK_BATCH points.
+void connect_add(struct walk *, const struct connection *, double u_light, const double u[2],
+                 bool mis);
+
+// Adds what is not blocked to sum[owner * n_channels + c]. Surfaces that let rays pass attenuate.
+void connect_finish(struct walk *, double *sum);
 
 // The balance heuristic's weight of having met this emitter by the material's sampling, from p.
 double connect_mis_weight(const struct scene *, const struct surface *emitter, struct vec p,
                           struct vec wi, double pdf);
+
+// The same for the background of an infinite light.
+double connect_mis_weight_background(const struct scene *, const struct light *, struct vec p,
+                                     struct vec wi, double pdf);
 
 #endif

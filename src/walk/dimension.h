@@ -10,6 +10,7 @@ enum {
   PAIR_POSITION = 1, // where a photon starts
   PAIR_DIRECTION = 2,
   PAIR_PIXEL = 0, // eye paths: where in the pixel's footprint
+  PAIR_LENS = 1,
   PAIR_VERTEX = 4,
   PAIRS_PER_VERTEX = 4,
 };
@@ -17,13 +18,19 @@ enum {
 enum vertex_pair {
   VERTEX_DIRECTION, // of scattering
   VERTEX_CHOICE,    // u0: component of the material; u1: roulette
-  VERTEX_LIGHT,     // next-event estimation: u0: which light; u1: free
+  VERTEX_LIGHT,     // u0: which light, of next-event estimation; u1: the material's own (bsdf.u)
   VERTEX_EMITTER,   // where on that light
 };
 
 // Vertex 0 is the first surface a path meets.
 static inline uint32_t pair_of_vertex(int vertex, enum vertex_pair pair) {
   return PAIR_VERTEX + PAIRS_PER_VERTEX * (uint32_t)vertex + (uint32_t)pair;
+}
+
+// Whether a path is stopped by the surfaces it may see through: number `crossing` since `vertex`.
+// Above all others; a path of 2^16 vertices or crossings would meet its own numbers again.
+static inline uint32_t pair_of_crossing(int vertex, int crossing) {
+  return 0x80000000u | ((uint32_t)vertex & 0x7fffu) << 16 | ((uint32_t)crossing & 0xffffu);
 }
 
 #endif

@@ -10,44 +10,92 @@ void eye_emitted(const struct scene *scene, const struct surface *surface, struc
   scene->light[light].type->radiance(scene, &scene->light[light], surface, w, rgb);
 }
 
-void eye_rays(struct walk *walk, const struct camera *camera, const struct pixel *pixel, int n,
-              bool footprint) {
+void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprint) {
+  const struct camera *camera = &walk->scene->camera;
+  const struct filter *filter = &walk->scene->filter;
+  bool lens = camera->lens_radius > 0;
   walk->n = n;
   walk->vertex = 0;
+  walk->transport = TRANSPORT_RADIANCE;
   if (footprint) walk_random(walk, 0, PAIR_PIXEL);
+  if (lens) walk_random(walk, 1, PAIR_LENS);
   for (int j = 0; j < n; j++) {
-    double x = footprint ? walk->u[0][0][j] : 0.5, y = footprint ? walk->u[0][1][j] : 0.5;
-    walk->ray[j] = camera_ray(camera, pixel[j].x + x, pixel[j].y + y);
+    double offset[2] = {0, 0}, u[2];
+    if (footprint)
+      filter->type->sample(filter, (double[2]){walk->u[0][0][j], walk->u[0][1][j]}, offset);
+    if (lens) u[0] = walk->u[1][0][j], u[1] = walk->u[1][1][j];
+    double x = pixel[j].x + 0.5 + offset[0], y = pixel[j].y + 0.5 + offset[1];
+    walk_start(walk, j, camera_ray(camera, x, y, lens ? u : NULL));
     walk->owner[j] = j;
     walk->pdf[j] = 0;
     for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] = 1;
   }
 }
 
-static void eye_point_fill(const struct walk *walk, int j, struct eye_point *point) {
-  point->surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-  point->hit = true;
-  point->wo = vec_scale(walk->ray[j].d, -1);
-  struct vec ng = point->surface.ng;
-  point->n = vec_dot(ng, point->wo) < 0 ? vec_scale(ng, -1) : ng;
-  double emitted[3];
-  eye_emitted(walk->scene, &point->surface, point->wo, emitted);
-  for (int c = 0; c < walk->n_channels; c++) {
-    point->weight[c] = walk->throughput[c][j];
-    point->emitted[c] = walk->throughput[c][j] * emitted[c];
+static void add_background(const struct walk *walk, struct eye_point *point) {
+  const struct scene *scene = walk->scene;
+  for (int j = 0; j < walk->n; j++) {
+    if (walk->hit[j].primitive != PRIMITIVE_NONE) continue;
+    for (uint32_t k = 0; k < scene->n_infinite; k++) {
+      const struct light *light = &scene->light[scene->infinite[k]];
+      double rgb[3];
+      light->type->background(scene, light, walk->ray[j].d, rgb);
+      for (int c = 0; c < walk->n_channels; c++)
+        point[walk->owner[j]].emitted[c] += walk->throughput[c][j] * rgb[c];
+    }
   }
 }
 
-void eye_trace(struct walk *walk, const struct camera *camera, const struct pixel *pixel, int n,
-               bool footprint, struct eye_point *point) {
+// The path ends here: `share` is the probability with which it does.
+static void stop(const struct walk *walk, int j, const struct surface *surface,
+                 const struct bsdf *bsdf, double share, struct eye_point *point) {
+  point->hit = true;
+  point->vertex = walk->vertex;
+  point->p = surface->p;
+  point->primitive = surface->primitive;
+  point->bsdf = *bsdf;
+  point->wo = vec_scale(walk->ray[j].d, -1);
+  for (int c = 0; c < walk->n_channels; c++) point->weight[c] = walk->throughput[c][j] / share;
+}
+
+// At a hit: add what it emits, then stop here or follow a delta lobe. True: the path goes on.
+static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
+  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+  struct vec wo = vec_scale(walk->ray[j].d, -1);
+  double emitted[3];
+  eye_emitted(walk->scene, &surface, wo, emitted);
+  for (int c = 0; c < walk->n_channels; c++)
+    point->emitted[c] += walk->throughput[c][j] * emitted[c];
+  if (walk->vertex >= depth) return false;
+  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  double delta = bsdf.type ? bsdf_delta_probability(&bsdf, wo, TRANSPORT_RADIANCE) : 0;
+  if (walk->u[1][0][j] < delta) return walk_scatter(walk, j, &surface, &bsdf);
+  stop(walk, j, &surface, &bsdf, 1 - delta, point);
+  return false;
+}
+
+static void trace_batch(struct walk *walk, int depth, struct eye_point *point) {
+  for (; walk->n > 0 && walk->vertex <= depth; walk->vertex++) {
+    walk_trace(walk);
+    if (walk->features.background) add_background(walk, point);
+    walk_drop_escaped(walk);
+    walk_vertex_random(walk);
+    int alive = 0;
+    for (int j = 0; j < walk->n; j++)
+      if (meet(walk, j, depth, &point[walk->owner[j]])) walk_move(walk, alive++, j);
+    walk->n = alive;
+  }
+}
+
+void eye_trace(struct walk *walk, const struct pixel *pixel, int n, bool footprint, int depth,
+               struct eye_point *point) {
   for (int first = 0; first < n; first += WALK_BATCH) {
     int batch = n - first < WALK_BATCH ? n - first : WALK_BATCH;
     for (int j = 0; j < batch; j++) {
-      walk->path[j] = eye_path(camera, pixel[first + j]);
+      walk->path[j] = eye_path(&walk->scene->camera, pixel[first + j]);
       point[first + j] = (struct eye_point){0};
     }
-    eye_rays(walk, camera, pixel + first, batch, footprint);
-    walk_trace(walk);
-    for (int j = 0; j < walk->n; j++) eye_point_fill(walk, j, &point[first + walk->owner[j]]);
+    eye_rays(walk, pixel + first, batch, footprint);
+    trace_batch(walk, depth, point + first);
   }
 }

@@ -11,6 +11,7 @@ struct photons {
   struct vec *position;
   struct vec *wi;  // towards where it came from, unit length
   double *flux[3]; // W, not divided by n_emitted
+  uint16_t *vertex; // scatterings on its way; 65535 for more
 };
 
 struct photon_pass {

@@ -9,27 +9,40 @@ static struct shadow shadow_new(int n_channels, struct arena *arena) {
       .distance = arena_new(arena, double, WALK_BATCH),
       .emitter = arena_new(arena, uint32_t, WALK_BATCH),
       .owner = arena_new(arena, int, WALK_BATCH),
-      .path = arena_new(arena, uint64_t, WALK_BATCH),
   };
   for (int c = 0; c < n_channels; c++) shadow.value[c] = arena_new(arena, double, WALK_BATCH);
   return shadow;
 }
 
-struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, int n_channels,
+static struct crossing crossing_new(struct arena *arena) {
+  return (struct crossing){
+      .ray = arena_new(arena, struct ray, WALK_BATCH),
+      .hit = arena_new(arena, struct hit, WALK_BATCH),
+      .slot = arena_new(arena, int, WALK_BATCH),
+      .path = arena_new(arena, uint64_t, WALK_BATCH),
+      .u = {arena_new(arena, double, WALK_BATCH), arena_new(arena, double, WALK_BATCH)},
+  };
+}
+
+struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct features features,
                       struct arena *arena) {
   struct walk *walk = arena_new(arena, struct walk, 1);
   walk->scene = scene;
   walk->bvh = bvh;
-  walk->n_channels = n_channels;
+  walk->features = features;
+  walk->n_channels = features.n_channels;
   walk->path = arena_new(arena, uint64_t, WALK_BATCH);
   walk->ray = arena_new(arena, struct ray, WALK_BATCH);
   walk->hit = arena_new(arena, struct hit, WALK_BATCH);
+  walk->from = arena_new(arena, struct vec, WALK_BATCH);
   walk->pdf = arena_new(arena, double, WALK_BATCH);
   walk->owner = arena_new(arena, int, WALK_BATCH);
-  for (int c = 0; c < n_channels; c++) walk->throughput[c] = arena_new(arena, double, WALK_BATCH);
+  for (int c = 0; c < walk->n_channels; c++)
+    walk->throughput[c] = arena_new(arena, double, WALK_BATCH);
   for (int slot = 0; slot < 4; slot++)
     for (int k = 0; k < 2; k++) walk->u[slot][k] = arena_new(arena, double, WALK_BATCH);
-  walk->shadow = shadow_new(n_channels, arena);
+  walk->shadow = shadow_new(walk->n_channels, arena);
+  if (features.see_through) walk->crossing = crossing_new(arena);
   return walk;
 }
 
@@ -38,22 +51,99 @@ void walk_random(struct walk *walk, int slot, uint32_t pair) {
            walk->u[slot][1]);
 }
 
+void walk_start(struct walk *walk, int j, struct ray ray) {
+  walk->ray[j] = ray;
+  walk->from[j] = ray.o;
+}
+
 void walk_move(struct walk *walk, int to, int from) {
   if (to == from) return;
   walk->path[to] = walk->path[from];
   walk->ray[to] = walk->ray[from];
   walk->hit[to] = walk->hit[from];
+  walk->from[to] = walk->from[from];
   walk->pdf[to] = walk->pdf[from];
   walk->owner[to] = walk->owner[from];
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
 
+// ---- passing through surfaces ----
+// What opacity stops is random: one number a crossing decides, so that the average over iterations
+// is what alpha says. The ray goes on from the surface; nothing else of the path changes.
+
+bool walk_meets_see_through(const struct scene *scene, struct hit hit) {
+  return hit.primitive != PRIMITIVE_NONE && scene->shape[scene->shape_of[hit.primitive]].see_through;
+}
+
+struct ray walk_ray_beyond(const struct surface *surface, const struct ray *ray) {
+  return (struct ray){surface->p, ray->d, INFINITY, surface->primitive};
+}
+
+// Lists the paths that stand before a surface they may see through.
+static int list_crossings(struct walk *walk) {
+  struct crossing *crossing = &walk->crossing;
+  int n = 0;
+  for (int j = 0; j < walk->n; j++)
+    if (walk_meets_see_through(walk->scene, walk->hit[j])) crossing->slot[n++] = j;
+  return n;
+}
+
+// Those that pass get a new ray and stay listed.
+static int pass_crossings(struct walk *walk, int n) {
+  struct crossing *crossing = &walk->crossing;
+  int passed = 0;
+  for (int k = 0; k < n; k++) {
+    int j = crossing->slot[k];
+    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+    if (crossing->u[0][k] < surface_opacity(walk->scene, &surface)) continue;
+    walk->ray[j] = walk_ray_beyond(&surface, &walk->ray[j]);
+    crossing->ray[passed] = walk->ray[j];
+    crossing->slot[passed++] = j;
+  }
+  return passed;
+}
+
+static void trace_beyond(struct walk *walk) {
+  struct crossing *crossing = &walk->crossing;
+  int n = list_crossings(walk);
+  for (int number = 0; n > 0; number++) {
+    for (int k = 0; k < n; k++) crossing->path[k] = walk->path[crossing->slot[k]];
+    rng_fill(walk->key, walk->iteration, crossing->path, n,
+             pair_of_crossing(walk->vertex, number), crossing->u[0], crossing->u[1]);
+    int passed = pass_crossings(walk, n);
+    bvh_closest(walk->bvh, crossing->ray, crossing->hit, passed);
+    n = 0;
+    for (int k = 0; k < passed; k++) {
+      walk->hit[crossing->slot[k]] = crossing->hit[k];
+      if (walk_meets_see_through(walk->scene, crossing->hit[k]))
+        crossing->slot[n++] = crossing->slot[k];
+    }
+  }
+}
+
 void walk_trace(struct walk *walk) {
   bvh_closest(walk->bvh, walk->ray, walk->hit, walk->n);
+  if (walk->features.see_through) trace_beyond(walk);
+}
+
+void walk_drop_escaped(struct walk *walk) {
   int alive = 0;
   for (int j = 0; j < walk->n; j++)
     if (walk->hit[j].primitive != PRIMITIVE_NONE) walk_move(walk, alive++, j);
   walk->n = alive;
+}
+
+// ---- scattering ----
+
+void walk_vertex_random(struct walk *walk) {
+  walk_random(walk, 0, pair_of_vertex(walk->vertex, VERTEX_DIRECTION));
+  walk_random(walk, 1, pair_of_vertex(walk->vertex, VERTEX_CHOICE));
+  if (walk->features.random_materials)
+    walk_random(walk, 2, pair_of_vertex(walk->vertex, VERTEX_LIGHT));
+}
+
+struct bsdf walk_bsdf(const struct walk *walk, int j, const struct surface *surface) {
+  return surface_bsdf(walk->scene, surface, walk->features.random_materials ? walk->u[2][1][j] : 0);
 }
 
 static double largest(const double *value, int n) {
@@ -62,18 +152,18 @@ static double largest(const double *value, int n) {
   return most;
 }
 
-bool walk_scatter(struct walk *walk, int j, const struct surface *surface) {
-  const struct material *material = scene_material(walk->scene, surface);
+bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
+                  const struct bsdf *bsdf) {
   double u[3] = {walk->u[0][0][j], walk->u[0][1][j], walk->u[1][0][j]};
   struct bsdf_sample sample;
   struct vec wo = vec_scale(walk->ray[j].d, -1);
-  if (!material->type->sample(material, surface, wo, u, &sample)) return false;
-  double survive = largest(sample.weight, walk->n_channels);
+  if (!bsdf_sample(bsdf, wo, u, walk->transport, &sample)) return false;
+  double survive = largest(sample.weight, walk->n_channels) * sample.eta2;
   if (!(walk->u[1][1][j] < survive)) return false;
-  // A weight above 1 (no diffuse surface has one) always survives and keeps its weight.
+  // A weight above 1 always survives and keeps its weight.
   double divisor = survive < 1 ? survive : 1;
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= sample.weight[c] / divisor;
-  walk->ray[j] = (struct ray){surface->p, sample.wi, INFINITY, surface->primitive};
-  walk->pdf[j] = sample.pdf_solid_angle;
+  walk_start(walk, j, (struct ray){surface->p, sample.wi, INFINITY, surface->primitive});
+  walk->pdf[j] = sample.pdf;
   return true;
 }

@@ -13,7 +13,9 @@ enum { WALK_BATCH = 4096 };
 struct walk {
   const struct scene *scene;
   const struct bvh *bvh;
+  struct features features;
   int n_channels;
+  enum transport transport; // photons: importance
   struct rng_key key;
   uint64_t iteration;
 
@@ -22,8 +24,10 @@ struct walk {
   uint64_t *path;  // [n] number of the path, its identity for random numbers
   struct ray *ray; // d of unit length
   struct hit *hit;
+  struct vec *from; // where the segment began; ray.o is where it last passed a surface
   double *throughput[3]; // photons: flux [W]; eye paths: weight of what is met next
-  double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: not sampled by one
+  double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: next-event
+                         // estimation cannot find what it meets (delta lobe, camera)
   int *owner;            // eye paths: the point this path belongs to
 
   double *u[4][2]; // scratch: pairs of random numbers
@@ -33,24 +37,48 @@ struct walk {
     double *distance, *value[3];
     uint32_t *emitter;
     int *owner;
-    uint64_t *path;
+    int n;
   } shadow;
+  struct crossing { // scratch of walk_trace, only where the scene has see-through shapes
+    struct ray *ray;
+    struct hit *hit;
+    int *slot;
+    uint64_t *path;
+    double *u[2];
+  } crossing;
 };
 
-struct walk *walk_new(const struct scene *, const struct bvh *, int n_channels, struct arena *);
+struct walk *walk_new(const struct scene *, const struct bvh *, struct features, struct arena *);
 
 // The pairs of random numbers of all paths alive: u[slot][0..1][j].
 void walk_random(struct walk *, int slot, uint32_t pair);
 
-// Closest hits of all rays; paths that hit nothing end.
+// Starts segment j: ray and from.
+void walk_start(struct walk *, int j, struct ray);
+
+// Closest hits of all rays, past the surfaces that let them through.
 void walk_trace(struct walk *);
+
+// For shadow rays, which carry transmittance instead of a choice.
+bool walk_meets_see_through(const struct scene *, struct hit);
+struct ray walk_ray_beyond(const struct surface *, const struct ray *);
+
+// Ends the paths that hit nothing.
+void walk_drop_escaped(struct walk *);
+
+// The numbers that paths need at a vertex: u[0] direction, u[1] choice, and u[2][1] the material's
+// own where one reads it (else zero, u[2] untouched): walk_bsdf, walk_scatter.
+void walk_vertex_random(struct walk *);
+
+// The scattering at the surface that path j has hit.
+struct bsdf walk_bsdf(const struct walk *, int j, const struct surface *);
 
 // Moves path `from` to place `to` (closing gaps keeps the order).
 void walk_move(struct walk *, int to, int from);
 
-// Samples the material at a surface with u[0] (direction) and u[1] (choice, roulette) of path j.
-// Roulette survives with the largest channel of the weight, so gray paths keep their throughput.
-// False: absorbed. True: ray, throughput and pdf are those of the next segment.
-bool walk_scatter(struct walk *, int j, const struct surface *);
+// Samples the bsdf with u[0] (direction) and u[1] (choice, roulette) of path j. Roulette survives
+// with the largest channel of the weight, the scaling of radiance by refraction left out.
+// False: absorbed. True: ray, from, throughput and pdf are those of the next segment.
+bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsdf *);
 
 #endif

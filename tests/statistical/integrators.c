@@ -87,7 +87,7 @@ static const struct scene *scene_turned(void) {
   struct problem problem = {0};
   struct text file = {text, (ptrdiff_t)strlen(text)};
   struct arena lists = arena_reserve(), scratch = arena_reserve();
-  if (!scene_read_text("turned.pbrt", file, &arena, lists, scratch, scene, &problem))
+  if (!scene_read_text("turned.pbrt", NULL, file, &arena, lists, scratch, scene, &problem))
     fail_msg("%s", problem.text);
   arena_release(lists);
   arena_release(scratch);

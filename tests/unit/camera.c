@@ -12,7 +12,7 @@ static void assert_along(struct vec d, double x, double y, double z) {
 }
 
 static struct ray ray(const struct scene *scene, double x, double y) {
-  struct ray r = camera_ray(&scene->camera, x, y);
+  struct ray r = camera_ray(&scene->camera, x, y, NULL);
   assert_true(fabs(vec_length(r.d) - 1) <= 4 * DBL_EPSILON);
   assert_true(r.t_max == INFINITY && r.leaving == PRIMITIVE_NONE);
   return r;

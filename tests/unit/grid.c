@@ -20,6 +20,7 @@ static struct photons photons_cloud(const char *name, int n, double half, double
   struct photons photons = {.count = n, .capacity = n, .n_channels = 1};
   photons.position = arena_new(&arena, struct vec, n);
   photons.wi = arena_new(&arena, struct vec, n);
+  photons.vertex = arena_new(&arena, uint16_t, n);
   photons.flux[0] = arena_new(&arena, double, n);
   struct rng_key key = rng_key(rng_hash_name(name), 1, RNG_TEST);
   for (uint64_t j = 0; j < (uint64_t)n; j++) {
@@ -131,13 +132,13 @@ static void unresolved_radii_are_refused(void **state) {
   assert_non_null(strstr(problem.text, "too small"));
 }
 
-// A material that scatters the same everywhere, so that the sums are known.
-static void value_one(const struct material *material, const struct surface *surface, struct vec wo,
-                      struct vec wi, double f[3]) {
-  (void)material, (void)surface, (void)wo, (void)wi;
-  f[0] = f[1] = f[2] = 1;
+// Reflects the same everywhere, so that the sums are known.
+static void value_one(const struct bsdf *bsdf, struct vec wo, struct vec wi,
+                      enum transport transport, double f[3]) {
+  (void)bsdf, (void)transport;
+  f[0] = f[1] = f[2] = wo.z * wi.z > 0;
 }
-static const struct material_type one = {.name = "one", .value = value_one};
+static const struct bsdf_type one = {.value = value_one};
 
 static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
   (void)state;
@@ -149,19 +150,18 @@ static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
   }
   struct grid grid = {0};
   grid_build(&grid, &photons, r, &arena);
-  struct material material = {&one, NULL};
-  struct shape shape = {0};
-  struct scene scene = {.material = &material, .shape = &shape};
-  struct eye_point point = {.hit = true, .wo = vec(0, 0, 1), .n = vec(0, 0, 1), .weight = {2.385}};
-  point.surface.p = vec(0.1, 0.05, 0);
+  struct eye_point point = {
+      .hit = true, .p = vec(0.1, 0.05, 0), .wo = vec(0, 0, 1), .weight = {2.385}};
+  point.bsdf = (struct bsdf){
+      .type = &one, .s = vec(1, 0, 0), .t = vec(0, 1, 0), .n = vec(0, 0, 1), .ng = vec(0, 0, 1)};
   struct gather gather = {0};
   for (int k = 0; k < n_kernels; k++) {
     // Two discs share the photons; the smaller one must not see those beyond it.
     struct disc disc[2] = {disc_of(&kernels[k], r, 1000), disc_of(&kernels[k], 0.2, 1000)};
     double out[2] = {0}, expected[2] = {0};
-    gather_point(&gather, &scene, &photons, &grid, &point, disc, 2, out, 1, &arena);
+    gather_point(&gather, &photons, &grid, &point, 64, disc, 2, out, 1, &arena);
     for (int64_t j = 0; j < photons.count; j++) {
-      struct vec d = vec_sub(photons.position[j], point.surface.p);
+      struct vec d = vec_sub(photons.position[j], point.p);
       for (int e = 0; e < 2; e++)
         if (photons.wi[j].z > 0)
           expected[e] += 2.385 * photons.flux[0][j] / 1000 / (disc[e].r * disc[e].r) *

@@ -17,7 +17,7 @@ static struct scene read_scene(const char *name) {
 
 // What the centre of a pixel sees, by trying every primitive.
 static struct surface seen(const struct scene *scene, int x, int y) {
-  struct ray ray = camera_ray(&scene->camera, x + 0.5, y + 0.5);
+  struct ray ray = camera_ray(&scene->camera, x + 0.5, y + 0.5, NULL);
   struct hit hit = {INFINITY, PRIMITIVE_NONE};
   for (uint32_t k = 0; k < scene->n_primitives; k++) {
     const struct shape *shape = &scene->shape[scene->shape_of[k]];
@@ -75,7 +75,7 @@ static void check_view(const struct view *view) {
   struct scene scene = read_scene(view->scene);
   struct surface surface = seen(&scene, view->x, view->y);
   struct vec n = surface.ng, p = surface.p;
-  if (vec_dot(n, camera_ray(&scene.camera, 0, 0).d) > 0) n = vec_scale(n, -1);
+  if (vec_dot(n, camera_ray(&scene.camera, 0, 0, NULL).d) > 0) n = vec_scale(n, -1);
   double rho = sqrt(p.x * p.x + p.y * p.y), e = irradiance_at(&scene, p, n);
   double curvature = laplacian(&scene, p, n);
   // Tilted vertices are floats: the plane is off by some 1e-7. Elsewhere it is exact.
@@ -177,7 +177,7 @@ static void test_furnace(void **state) {
   for (int x = 0; x < 65; x += 8)
     for (int y = 0; y < 65; y += 8) {
       struct surface surface = seen(&scene, x, y);
-      struct vec w = vec_scale(camera_ray(&scene.camera, x + 0.5, y + 0.5).d, -1);
+      struct vec w = vec_scale(camera_ray(&scene.camera, x + 0.5, y + 0.5, NULL).d, -1);
       double rgb[3];
       scene.light[0].type->radiance(&scene, &scene.light[0], &surface, w, rgb);
       assert_true(rgb[0] == 0.5);

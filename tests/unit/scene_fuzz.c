@@ -101,7 +101,7 @@ static void check_scene(const struct scene *scene) {
   for (int i = 0; i < 3; i++) assert_true(scene->bounds.lo[i] <= scene->bounds.hi[i]);
   for (uint32_t k = 0; k < scene->n_lights; k++)
     assert_true(scene->light[k].probability >= 0 && scene->light[k].probability <= 1);
-  struct ray ray = camera_ray(&scene->camera, 0.5, 0.5);
+  struct ray ray = camera_ray(&scene->camera, 0.5, 0.5, NULL);
   assert_true(isfinite(ray.o.x) && scene->camera.width > 0);
 }
 

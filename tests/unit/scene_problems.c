@@ -92,10 +92,10 @@ static const struct {
     {W "Material \"diffuse\" \"rgb reflectance\" [.5 .5]", 2, 20, "groups of 3"},
     {W "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5 .5 .5 .5]", 2, 20, "needs 3 values"},
     // values
-    {W "Material \"diffuse\" \"rgb reflectance\" [.5 1.01 .5]", 2, 20, "outside [0, 1]"},
-    {W "Material \"diffuse\" \"rgb reflectance\" [.5 -.1 .5]", 2, 20, "outside [0, 1]"},
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 1.01 .5]", 2, 20, "must be in [0, 1]"},
+    {W "Material \"diffuse\" \"rgb reflectance\" [.5 -.1 .5]", 2, 20, "must be in [0, 1]"},
     {W "Material \"diffuse\" \"spectrum reflectance\" \"wood\"", 2, 20, "must be of type rgb"},
-    {W "Material \"diffuse\" \"texture reflectance\" \"wood\"", 2, 20, "must be of type rgb"},
+    {W "Material \"diffuse\" \"texture reflectance\" \"wood\"", 2, 20, "no texture"},
     {"Camera \"perspective\" \"float fov\" 180", 1, 22, "between 0 and 180"},
     {"Camera \"perspective\" \"float fov\" 0", 1, 22, "between 0 and 180"},
     {"Camera \"perspective\" \"float lensradius\" .1", 1, 22, "\"lensradius\" must be 0"},

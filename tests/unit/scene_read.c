@@ -79,10 +79,10 @@ static void what_the_file_does_not_say_has_pbrts_default(void **state) {
   assert_false(settings->centre);
   assert_true(isnan(settings->radius) && isnan(settings->alpha));
   assert_true(settings->photons == 0 && settings->iterations == 0 && settings->seed == -1);
-  const struct material *material = &scene.material[scene.shape[0].material];
-  struct surface surface = {.ng = vec(0, 0, 1)};
+  struct surface surface = {.ng = vec(0, 0, 1), .ns = vec(0, 0, 1)};
+  struct bsdf bsdf = surface_bsdf(&scene, &surface, 0);
   double f[3];
-  material->type->value(material, &surface, vec(0, 0, 1), vec(0, 0, 1), f);
+  bsdf_value(&bsdf, vec(0, 0, 1), vec(0, 0, 1), TRANSPORT_RADIANCE, f);
   assert_true(fabs(f[0] - 0.5 / acos(-1.0)) <= DBL_EPSILON);
 }
 

@@ -32,7 +32,7 @@ static inline bool scene_of_bytes(const char *bytes, ptrdiff_t length, struct sc
   struct test_memory memory = *test_memory();
   *problem = (struct problem){{0}};
   struct text text = {arena_string(&memory.lists, bytes, length), length};
-  return scene_read_text("t.pbrt", text, &memory.keep, memory.lists, memory.scratch, scene,
+  return scene_read_text("t.pbrt", "", text, &memory.keep, memory.lists, memory.scratch, scene,
                          problem);
 }
 

@@ -1,79 +1,76 @@
-// Material "diffuse": Lambert, f = reflectance / pi on the side of the geometric normal where wo
-// is; both sides reflect. `rgb reflectance` [0.5 0.5 0.5].
+// Material "diffuse": Lambert, f = reflectance / pi on the side of the shading normal where wo is;
+// both sides reflect. `reflectance` [0.5 0.5 0.5].
 #include "numeric/elementary.h"
-#include "scene/scene.h"
+#include "scene/read.h"
 
 static const double one_over_pi = 0x1.45f306dc9c883p-2;
 
 struct diffuse {
-  double reflectance[3];
+  struct input reflectance;
 };
 
-static bool read(struct params *params, struct arena *arena, struct material *material) {
-  struct diffuse *diffuse = arena_new(arena, struct diffuse, 1);
-  *diffuse = (struct diffuse){{0.5, 0.5, 0.5}};
-  params_rgb(params, "reflectance", diffuse->reflectance);
-  for (int c = 0; c < 3; c++)
-    if (!(diffuse->reflectance[c] >= 0 && diffuse->reflectance[c] <= 1))
-      params_complain(params, "reflectance", "the reflectance %g is outside [0, 1]",
-                      diffuse->reflectance[c]);
+static bool read(struct scene_builder *builder, struct params *params, struct material *material) {
+  static const double half[3] = {0.5, 0.5, 0.5};
+  struct diffuse *diffuse = arena_new(builder->arena, struct diffuse, 1);
+  diffuse->reflectance = input_read_spectrum(builder, params, "reflectance", SPECTRUM_ALBEDO, half);
   material->data = diffuse;
   return params_finish(params);
 }
 
-static bool same_side(const struct surface *surface, struct vec wo, struct vec wi) {
-  double o = vec_dot(wo, surface->ng), i = vec_dot(wi, surface->ng);
-  return (o > 0 && i > 0) || (o < 0 && i < 0);
+static bool same_side(struct vec wo, struct vec wi) { return (wo.z > 0) == (wi.z > 0); }
+
+static void value(const struct bsdf *bsdf, struct vec wo, struct vec wi, enum transport transport,
+                  double f[3]) {
+  (void)transport;
+  double scale = same_side(wo, wi) ? one_over_pi : 0;
+  for (int c = 0; c < 3; c++) f[c] = bsdf->x[c] * scale;
 }
 
-static void value(const struct material *material, const struct surface *surface, struct vec wo,
-                  struct vec wi, double f[3]) {
+static double pdf(const struct bsdf *bsdf, struct vec wo, struct vec wi, enum transport transport) {
+  (void)bsdf, (void)transport;
+  return same_side(wo, wi) ? fabs(wi.z) * one_over_pi : 0;
+}
+
+// Cosine-weighted: a point of the unit disc, lifted to the hemisphere (Malley).
+static bool sample(const struct bsdf *bsdf, struct vec wo, const double u[3],
+                   enum transport transport, struct bsdf_sample *out) {
+  (void)transport;
+  double r = sqrt(u[0]), z = sqrt(1 - u[0]), sine, cosine;
+  num_sincos_turns(u[1], &sine, &cosine);
+  *out = (struct bsdf_sample){.wi = vec(r * cosine, r * sine, wo.z < 0 ? -z : z),
+                              .weight = {bsdf->x[0], bsdf->x[1], bsdf->x[2]},
+                              .pdf = z * one_over_pi,
+                              .eta2 = 1};
+  return true;
+}
+
+static const struct bsdf_type lambert = {.value = value, .pdf = pdf, .sample = sample};
+
+static void bsdf(const struct scene *scene, const struct material *material,
+                 const struct surface *surface, struct bsdf *out) {
+  (void)scene;
   const struct diffuse *diffuse = material->data;
-  double scale = same_side(surface, wo, wi) ? one_over_pi : 0;
-  for (int c = 0; c < 3; c++) f[c] = diffuse->reflectance[c] * scale;
-}
-
-static double pdf(const struct material *material, const struct surface *surface, struct vec wo,
-                  struct vec wi) {
-  (void)material;
-  return same_side(surface, wo, wi) ? fabs(vec_dot(wi, surface->ng)) * one_over_pi : 0;
+  input_rgb(&diffuse->reflectance, surface, out->x);
+  if (out->x[0] != 0 || out->x[1] != 0 || out->x[2] != 0) out->type = &lambert;
 }
 
 static bool is_black(const struct material *material) {
   const struct diffuse *diffuse = material->data;
-  return diffuse->reflectance[0] == 0 && diffuse->reflectance[1] == 0 &&
-         diffuse->reflectance[2] == 0;
+  const double *rgb = diffuse->reflectance.value;
+  return !diffuse->reflectance.texture && rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0;
 }
 
-// Cosine-weighted: a point of the unit disc, lifted to the hemisphere (Malley).
-static bool sample(const struct material *material, const struct surface *surface, struct vec wo,
-                   const double u[3], struct bsdf_sample *out) {
+static bool is_gray(const struct scene *scene, const struct material *material) {
+  (void)scene;
   const struct diffuse *diffuse = material->data;
-  double side = vec_dot(wo, surface->ng), sine, cosine;
-  if (side == 0 || is_black(material)) return false;
-  struct vec n = side < 0 ? vec_scale(surface->ng, -1) : surface->ng, s, t;
-  vec_basis(n, &s, &t);
-  double r = sqrt(u[0]), z = sqrt(1 - u[0]);
-  num_sincos_turns(u[1], &sine, &cosine);
-  out->wi = vec_along(vec_along(vec_scale(s, r * cosine), t, r * sine), n, z);
-  out->pdf_solid_angle = z * one_over_pi;
-  for (int c = 0; c < 3; c++) out->weight[c] = diffuse->reflectance[c];
-  return true;
-}
-
-static bool is_gray(const struct material *material) {
-  const struct diffuse *diffuse = material->data;
-  return diffuse->reflectance[0] == diffuse->reflectance[1] &&
-         diffuse->reflectance[1] == diffuse->reflectance[2];
+  return input_is_gray(&diffuse->reflectance);
 }
 
 const struct material_type material_diffuse = {
     .name = "diffuse",
     .about = "Lambertian reflection, both sides",
     .read = read,
-    .value = value,
-    .pdf = pdf,
-    .sample = sample,
+    .bsdf = bsdf,
     .is_gray = is_gray,
     .is_black = is_black,
 };

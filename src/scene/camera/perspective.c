@@ -1,0 +1,30 @@
+// Camera "perspective": `float fov` [90] degrees across the shorter axis.
+#include "numeric/elementary.h"
+#include "scene/scene.h"
+
+static bool read(struct camera *camera, struct params *params) {
+  camera->fov = params_float(params, "fov", 90);
+  if (!(camera->fov > 0 && camera->fov < 180))
+    params_complain(params, "fov", "fov must be between 0 and 180 degrees");
+  return !params->problem->text[0];
+}
+
+// The window at z = 1 is the screen window times tan(fov / 2).
+static double window_scale(const struct camera *camera) {
+  double sine, cosine;
+  num_sincos_turns(camera->fov / 720, &sine, &cosine);
+  return sine / cosine;
+}
+
+static struct ray ray(const struct camera *camera, double x, double y) {
+  (void)camera;
+  return (struct ray){vec(0, 0, 0), vec(x, y, 1), INFINITY, PRIMITIVE_NONE};
+}
+
+const struct camera_type camera_perspective = {
+    .name = "perspective",
+    .about = "a pinhole or thin lens, fov across the shorter axis",
+    .read = read,
+    .window_scale = window_scale,
+    .ray = ray,
+};
