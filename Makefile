@@ -54,6 +54,8 @@ library := $(out)/libphotonlab.a
 binary := $(if $(filter release,$(BUILD)),build/photonlab,$(out)/photonlab)
 test_sources := $(sort $(wildcard tests/unit/*.c tests/statistical/*.c))
 test_programs := $(test_sources:tests/%.c=$(out)/tests/%)
+conformance_sources := $(sort $(wildcard tests/conformance/*.c))
+conformance := $(out)/tests/conformance/conformance
 cli_tests := $(filter-out tests/cli/lib.sh,$(sort $(wildcard tests/cli/*.sh)))
 
 quiet = $(if $(V),,@printf '  %-4s %s\n' $1 $2;)
@@ -152,20 +154,38 @@ $(binary): $(call object,$(main)) $(gen)/version.o $(library)
 # The version changes with every commit: tests carry it, but are not linked again for it.
 $(test_programs): $(out)/tests/%: $(out)/obj/tests/%.o $(library) | $(gen)/version.o
 	@mkdir -p $(@D)
-	$(call quiet,LD,$@)$(CC) $(CFLAGS) $^ $| $(LDLIBS) -lcmocka -o $@
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) $(filter %.o,$^) $(library) $| $(LDLIBS) -lcmocka -o $@
 
-$(call object,$(test_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_test)
+$(conformance): $(call object,$(conformance_sources)) $(library) $(gen)/version.o
+	@mkdir -p $(@D)
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) $^ $(LDLIBS) -o $@
+
+# The statistics of the conformance test have a unit test.
+$(out)/tests/unit/compare: $(call object,tests/conformance/compare.c)
+
+$(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_test)
 	@mkdir -p $(@D)
 	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
--include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources)) $(generated))
+-include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources)) $(generated))
 
 # ---- tests ----
-.PHONY: test test-programs test-asan test-tsan test-bits test-plants validate
+.PHONY: test conformance test-programs test-asan test-tsan test-bits test-plants validate
 test-programs: $(test_programs)
 
 test: $(binary) $(test_programs)
 	@PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(test_programs) $(cli_tests)
+
+# Absent folders of pbrt-v4's scenes and images are skipped.
+CONFORMANCE = ../shared/conformance
+SCENES = ../shared/scenes
+IMAGES =# of all scenes, not only of those that fail: 1
+SCENE =# only those whose name contains this
+folders = CONFORMANCE=$(CONFORMANCE) SCENES=$(SCENES)
+
+conformance: $(conformance)
+	@$(folders) OUTPUT=build/conformance $(conformance) --full $(if $(IMAGES),--images) \
+	  $(if $(SCENE),--scene $(SCENE))
 
 sanitized = TIME_LIMIT_S=900 tests/run $(test_sources:tests/%.c=build/$1/tests/%)
 test-asan:
@@ -232,6 +252,8 @@ help:
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
 	@echo 'make test-bits         the same bytes from gcc -O1, -O3, clang and every instruction set'
 	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
+	@echo 'make conformance       images against pbrt-v4, as precise as the stored ones (CONFORMANCE=folder'
+	@echo '                       SCENES=folder SCENE=name IMAGES=1)'
 	@echo 'make validate          the built-in checks against closed forms'
 	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
 	@for name in $(experiments); do echo "                         $$name"; done

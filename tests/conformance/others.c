@@ -1,0 +1,118 @@
+// Scenes by others, coloured. pbrt-v4 is spectral, so image means may differ by 1 %: that is a
+// margin, not an error. A scene fails if its mean is outside by more than four standard errors, and
+// is said to agree only if it is inside by two.
+#include "tests/conformance/parts.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static const double margin = 0.01, limit = 4;
+
+static const char *const with_reference[] = {"cornell-box", "veach-bidir", NULL};
+
+static void compare_means(const struct options *options, struct report *report,
+                          const struct subject *subject, const struct image *mean,
+                          const struct image *se, struct arena arena) {
+  enum { BATCHES = 32 };
+  struct region all = {0, 0, mean->width, mean->height};
+  struct batches batches =
+      batches_render(subject, "others", BATCHES, options->full ? 128 : 1, &arena);
+  struct estimate ours = batches_region(&batches, all, 0, 1, arena);
+  struct estimate theirs = region_reference(mean, se, all, arena);
+  double error = sqrt(ours.se2 + theirs.se2) / theirs.mean, ratio = ours.mean / theirs.mean;
+  bool passed = fabs(ratio - 1) < margin + limit * error;
+  bool agrees = fabs(ratio - 1) + 2 * error < margin;
+  report_line(report, passed ? PASSED : FAILED,
+              "%-24s %6" PRIu64 " %9.6f %9.6f %8.5f +- %.5f %-14s %6.1f", subject->name,
+              batches.samples, ours.mean, theirs.mean, ratio, error,
+              !passed  ? "disagrees"
+              : agrees ? "agrees"
+                       : "not resolvable",
+              batches.seconds);
+  if (!options->always_pictures && (passed || !options->output)) return;
+  struct image image = batches_mean(&batches, &arena);
+  picture_write(options, subject->name, &image, mean, NULL, 1, arena);
+}
+
+static bool load(const struct options *options, const char *name, struct arena *arena,
+                 struct subject *subject, struct problem *problem) {
+  return subject_load(name, arena_format(arena, "%s/%s/small.pbrt", options->scenes, name), arena,
+                      subject, problem);
+}
+
+static void check_with_reference(const struct options *options, struct report *report,
+                                 const char *name, struct arena arena) {
+  struct problem problem = {0};
+  struct subject *subject = arena_new(&arena, struct subject, 1);
+  struct image mean, se;
+  if (!load(options, name, &arena, subject, &problem)) {
+    refused(report, name, NULL, &problem);
+    return;
+  }
+  const char *stem = arena_format(&arena, "%s/%s/small", options->scenes, name);
+  if (image_read(arena_format(&arena, "%s.mean.pfm", stem), &arena, &mean, &problem) &&
+      image_read(arena_format(&arena, "%s.se.pfm", stem), &arena, &se, &problem))
+    compare_means(options, report, subject, &mean, &se, arena);
+  else
+    report_line(report, FAILED, "%-24s %s", name, problem.text);
+}
+
+// No reference: path tracing and pbrt-v4's own sppm do not resolve it. Two extrapolations that
+// share neither radii nor photons nor seeds.
+static void check_water(const struct options *options, struct report *report, struct arena arena) {
+  static const char name[] = "water-caustic";
+  struct problem problem = {0};
+  struct subject *subject = arena_new(&arena, struct subject, 1);
+  if (!load(options, name, &arena, subject, &problem)) {
+    refused(report, name, NULL, &problem);
+    return;
+  }
+  double begin = subject_seconds(), z[PHOTON_REGIONS];
+  struct estimate coarse[PHOTON_REGIONS], fine[PHOTON_REGIONS];
+  struct photon_plan plan = {.radius = 0.073,
+                             .n_emitted = options->full ? 50000 : 10000,
+                             .iterations = options->full ? 8 : 1,
+                             .runs = options->full ? 64 : 16,
+                             .purpose = "coarse"};
+  photons_extrapolate(subject, plan, arena, coarse);
+  plan.radius *= 0.6;
+  plan.n_emitted *= 2;
+  plan.purpose = "fine";
+  photons_extrapolate(subject, plan, arena, fine);
+  bool passed = true;
+  for (int r = 0; r < PHOTON_REGIONS; r++) {
+    z[r] = compare_z(coarse[r], fine[r]);
+    passed &= fabs(z[r]) < limit;
+  }
+  double error = sqrt(coarse[0].se2 + fine[0].se2) / fine[0].mean;
+  report_line(report, passed ? PASSED : FAILED,
+              "%-24s %6s %9.6f %9.6f %8.5f +- %.5f z %.2f, of quadrants %.2f %.2f %.2f %.2f %6.1f",
+              name, "", coarse[0].mean, fine[0].mean, coarse[0].mean / fine[0].mean, error, z[0],
+              z[1], z[2], z[3], z[4], subject_seconds() - begin);
+}
+
+static void check_volumetric(const struct options *options, struct report *report,
+                             struct arena arena) {
+  static const char name[] = "volumetric-caustic";
+  struct problem problem = {0};
+  struct subject *subject = arena_new(&arena, struct subject, 1);
+  if (!load(options, name, &arena, subject, &problem))
+    refused(report, name, "MakeNamedMedium is not in this version", &problem);
+  else
+    report_line(report, FAILED, "%-24s is read, but nothing says what it should look like", name);
+}
+
+void others_check(const struct options *options, struct report *report) {
+  report_heading(report,
+                 "scenes by others: means within %.0f %% of pbrt-v4's; water by photons of "
+                 "two radii, |z| < %.0f",
+                 100 * margin, limit);
+  struct arena arena = arena_reserve();
+  for (int s = 0; with_reference[s]; s++)
+    if (selected(options, with_reference[s]))
+      check_with_reference(options, report, with_reference[s], arena);
+  if (selected(options, "water-caustic")) check_water(options, report, arena);
+  if (selected(options, "volumetric-caustic")) check_volumetric(options, report, arena);
+  arena_release(arena);
+}

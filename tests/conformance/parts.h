@@ -1,0 +1,45 @@
+// The three parts of the conformance test.
+#ifndef TESTS_CONFORMANCE_PARTS_H
+#define TESTS_CONFORMANCE_PARTS_H
+
+#include "tests/conformance/report.h"
+#include "tests/conformance/subject.h"
+
+struct conformance_scene {
+  const char *name, *about;
+  const char *refusal; // what the reader says while the scene is beyond this version, else NULL
+};
+extern const struct conformance_scene conformance_scenes[]; // ends with a NULL name
+
+struct options {
+  const char *conformance, *scenes, *output; // folders; NULL output: pictures are not wanted
+  const char *only;                          // scenes whose name contains this; NULL: all
+  bool full;                                 // as precise as the references, else a glance
+  bool always_pictures;
+};
+
+// What path tracing found in a scene, for photons to agree with.
+struct path_result {
+  bool rendered;
+  struct estimate region[PHOTON_REGIONS];
+};
+
+// Path tracing against pbrt-v4's images. result[] runs with conformance_scenes.
+void paths_check(const struct options *, struct report *, struct path_result *result);
+
+// Photons extrapolated to radius zero against path tracing.
+void photons_check(const struct options *, struct report *, const struct path_result *result);
+
+// Scenes by others: image means only, or the integrator against itself.
+void others_check(const struct options *, struct report *);
+
+// Prints the line of a scene that cannot be read; passes if `refusal` is what the reader says.
+void refused(struct report *, const char *name, const char *refusal, const struct problem *);
+
+bool selected(const struct options *, const char *name);
+
+// NAME.png (ours, the reference, z of every block from blue to red) and NAME.exr.
+void picture_write(const struct options *, const char *name, const struct image *ours,
+                   const struct image *reference, const double *z, int side, struct arena scratch);
+
+#endif
