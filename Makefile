@@ -38,7 +38,7 @@ FLAGS.tsan = -fsanitize=thread -fno-omit-frame-pointer
 CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
   -ffp-contract=off -fno-builtin -fno-math-errno -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
 CPPFLAGS := -Isrc -I.
-LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -lz -lm
+LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -ljpeg -lz -lm
 
 # ---- files ----
 out := build/$(BUILD)

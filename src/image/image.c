@@ -1,22 +1,21 @@
+#define _GNU_SOURCE // strcasecmp
 #include "image/format.h"
 
 #include <string.h>
+#include <strings.h>
 
-static const struct format {
-  const char *extension;
-  bool (*write)(FILE *, const char *path, const struct image *, struct problem *);
-  bool (*read)(struct text, const char *path, struct arena *, struct image *, struct problem *);
-} formats[] = {
-    {"exr", exr_file_write, exr_file_read},
-    {"pfm", pfm_file_write, pfm_file_read},
-    {"png", png_file_write, NULL},
+static const struct format formats[] = {
+    {"exr", exr_file_write, exr_file_read, NULL}, {"pfm", pfm_file_write, pfm_file_read, NULL},
+    {"hdr", NULL, hdr_file_read, NULL},           {"png", png_file_write, NULL, png_file_texels},
+    {"jpg", NULL, NULL, jpg_file_texels},         {"jpeg", NULL, NULL, jpg_file_texels},
+    {"tga", NULL, NULL, tga_file_texels},
 };
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
-static const struct format *find_format(const char *path) {
+const struct format *format_find(const char *path) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
   for (int f = 0; dot && f < N_FORMATS; f++)
-    if (strcmp(dot + 1, formats[f].extension) == 0) return &formats[f];
+    if (strcasecmp(dot + 1, formats[f].extension) == 0) return &formats[f];
   return NULL;
 }
 
@@ -50,7 +49,8 @@ int image_colour(const struct image *image, const char *path, const float *plane
 }
 
 bool image_can_write(const char *path, struct problem *problem) {
-  if (find_format(path)) return true;
+  const struct format *format = format_find(path);
+  if (format && format->write) return true;
   return problem_set(problem, "%s: unknown image format (known: .exr, .pfm, .png)", path);
 }
 
@@ -58,16 +58,17 @@ bool image_write(const char *path, const struct image *image, struct problem *pr
   if (!image_can_write(path, problem)) return false;
   struct file_out out;
   if (!file_begin(&out, path, problem)) return false;
-  if (find_format(path)->write(out.stream, path, image, problem)) return file_commit(&out, problem);
+  if (format_find(path)->write(out.stream, path, image, problem)) return file_commit(&out, problem);
   file_abandon(&out);
   return false;
 }
 
 bool image_read(const char *path, struct arena *arena, struct image *image,
                 struct problem *problem) {
-  const struct format *format = find_format(path);
+  const struct format *format = format_find(path);
   if (!format || !format->read)
-    return problem_set(problem, "%s: cannot read this image format (known: .exr, .pfm)", path);
+    return problem_set(problem, "%s: cannot read this image format (known: .exr, .pfm, .hdr)",
+                       path);
   struct text text;
   return file_read(path, arena, &text, problem) && format->read(text, path, arena, image, problem);
 }

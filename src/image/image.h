@@ -24,7 +24,7 @@ struct image image_new(int width, int height, int n_channels, const char *const 
 // png (R, G, B through the sRGB curve, 8 bits). Appears complete or not at all.
 bool image_write(const char *path, const struct image *, struct problem *);
 
-// exr and pfm. Grayscale pfm ("Pf") gives one channel "Y".
+// exr, pfm and hdr. Grayscale pfm ("Pf") gives one channel "Y". (Other formats: image/raster.h.)
 bool image_read(const char *path, struct arena *, struct image *, struct problem *);
 
 // Whether image_write knows the extension; the problem lists those it knows.
