@@ -25,6 +25,7 @@ static struct param *take(struct params *params, const char *type, const char *n
   note_asked(params, name);
   struct param *param = find(params, name);
   if (!param || params->problem->text[0]) return NULL;
+  if (param->is_default && strcmp(param->type, type) != 0) return NULL;
   param->taken = true;
   if (strcmp(param->type, type) != 0) {
     problem_at(params->problem, param->place, "%s: \"%s\" must be of type %s, not %s",
@@ -112,7 +113,7 @@ bool params_finish(struct params *params) {
   if (params->problem->text[0]) return false;
   for (int i = 0; i < params->count; i++) {
     const struct param *param = &params->item[i];
-    if (param->taken) continue;
+    if (param->taken || param->is_default) continue;
     char hint[512];
     write_hint(params, param->name, hint, sizeof hint);
     return problem_at(params->problem, param->place, "%s does not read a parameter \"%s\"%s",

@@ -20,6 +20,7 @@ struct param {
   const char **string;
   bool *truth;
   bool taken;
+  bool is_default; // given for other directives too: of another type or unread, it is no error
 };
 
 enum { PARAMS_MAX_ASKED = 32 };

@@ -58,6 +58,10 @@ static const struct param_type *find_type(struct lexer *lexer, const char *name)
     if (strcmp(types[i].name, name) == 0) return &types[i];
     names[i] = types[i].name;
   }
+  if (strcmp(name, "color") == 0) { // of pbrt-v3
+    problem_at(lexer->problem, lexer->token.place, "unknown parameter type \"color\"; use \"rgb\"");
+    return NULL;
+  }
   const char *nearest = suggest_name(name, names, N_TYPES);
   problem_at(lexer->problem, lexer->token.place, "unknown parameter type \"%s\"%s%s%s", name,
              nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");

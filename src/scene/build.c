@@ -112,6 +112,9 @@ bool scene_add_quadric(struct scene_builder *builder, struct params *params,
   row->world_from_object = builder->world_from_object;
   transform_invert(row->world_from_object, &row->object_from_world); // the reader checked it
   struct shape *shape = current_shape(scene);
+  // To pbrt an instance's matrix mirrors normals like any other vector. Vertices say so by
+  // themselves; a quadric's normal was flipped for it, as for the matrix it was defined with.
+  if (builder->mirrored_instance) shape->flip = !shape->flip;
   shape->local = scene->n_quadrics++;
   shape->count = 1;
   struct box box = shape->type->bounds(scene, shape, scene->n_primitives++);
@@ -201,7 +204,7 @@ static bool list_infinite(struct reader *reader) {
 
 bool scene_finish(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
-  if (!read_finish_options(reader)) return false;
+  if (!read_finish_options(reader) || !read_instances(reader)) return false;
   if (scene->n_primitives == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
   fill_tables(&reader->builder);

@@ -1,6 +1,7 @@
 // scene_read: the table of directives, and the loop over those of a file.
 #include "scene/read.h"
 
+#include "base/gzip.h"
 #include "pbrt/parse.h"
 #include "pbrt/suggest.h"
 #include "scene/reader.h"
@@ -10,27 +11,41 @@
 #include <xxhash.h>
 
 static const struct directive directives[] = {
-    {"LookAt", ANYWHERE, NUMBERS, 9, false, read_look_at},
-    {"Translate", ANYWHERE, NUMBERS, 3, false, read_translate},
-    {"Rotate", ANYWHERE, NUMBERS, 4, false, read_rotate},
-    {"Scale", ANYWHERE, NUMBERS, 3, false, read_scale},
-    {"Identity", ANYWHERE, BARE, 0, false, read_identity},
-    {"Transform", ANYWHERE, MATRIX, 16, false, read_transform},
-    {"ConcatTransform", ANYWHERE, MATRIX, 16, false, read_concat_transform},
-    {"ReverseOrientation", ANYWHERE, BARE, 0, false, read_reverse_orientation},
-    {"ColorSpace", ANYWHERE, NAME, 0, false, read_color_space},
-    {"Camera", BEFORE_WORLD, PARAMETERS, 0, true, read_camera},
-    {"Film", BEFORE_WORLD, PARAMETERS, 0, true, read_film},
-    {"PixelFilter", BEFORE_WORLD, PARAMETERS, 0, false, read_pixel_filter},
-    {"Sampler", BEFORE_WORLD, PARAMETERS, 0, false, read_sampler},
-    {"Integrator", BEFORE_WORLD, PARAMETERS, 0, true, read_integrator},
-    {"WorldBegin", BEFORE_WORLD, BARE, 0, false, read_world_begin},
-    {"AttributeBegin", IN_WORLD, BARE, 0, false, read_attribute_begin},
-    {"AttributeEnd", IN_WORLD, BARE, 0, false, read_attribute_end},
-    {"Shape", IN_WORLD, PARAMETERS, 0, false, read_shape},
-    {"Material", IN_WORLD, PARAMETERS, 0, false, read_material},
-    {"LightSource", IN_WORLD, PARAMETERS, 0, true, read_light_source},
-    {"AreaLightSource", IN_WORLD, PARAMETERS, 0, true, read_area_light_source},
+    {"LookAt", ANYWHERE, NUMBERS, 9, .run = read_look_at},
+    {"Translate", ANYWHERE, NUMBERS, 3, .run = read_translate},
+    {"Rotate", ANYWHERE, NUMBERS, 4, .run = read_rotate},
+    {"Scale", ANYWHERE, NUMBERS, 3, .run = read_scale},
+    {"Identity", ANYWHERE, BARE, .run = read_identity},
+    {"Transform", ANYWHERE, MATRIX, .run = read_transform},
+    {"ConcatTransform", ANYWHERE, MATRIX, .run = read_concat_transform},
+    {"ActiveTransform", ANYWHERE, WORD, .run = read_active_transform},
+    {"TransformTimes", BEFORE_WORLD, NUMBERS, 2, .run = read_transform_times},
+    {"CoordinateSystem", ANYWHERE, NAME, .run = read_coordinate_system},
+    {"CoordSysTransform", ANYWHERE, NAME, .run = read_coord_sys_transform},
+    {"ReverseOrientation", ANYWHERE, BARE, .run = read_reverse_orientation},
+    {"ColorSpace", ANYWHERE, NAME, .run = read_color_space},
+    {"Option", ANYWHERE, NAME_VALUE, .run = read_option},
+    {"Include", ANYWHERE, NAME, .run = read_include},
+    {"Import", IN_WORLD, NAME, .run = read_import},
+    {"Camera", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_camera},
+    {"Film", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_film},
+    {"PixelFilter", BEFORE_WORLD, PARAMETERS, .run = read_pixel_filter},
+    {"Sampler", BEFORE_WORLD, PARAMETERS, .run = read_sampler},
+    {"Accelerator", BEFORE_WORLD, PARAMETERS, .run = read_accelerator},
+    {"Integrator", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_integrator},
+    {"WorldBegin", BEFORE_WORLD, BARE, .run = read_world_begin},
+    {"AttributeBegin", IN_WORLD, BARE, .run = read_attribute_begin},
+    {"AttributeEnd", IN_WORLD, BARE, .run = read_attribute_end},
+    {"TransformBegin", IN_WORLD, BARE, .run = read_attribute_begin},
+    {"TransformEnd", IN_WORLD, BARE, .run = read_attribute_end},
+    {"Attribute", ANYWHERE, PARAMETERS, .lifetime = WITH_SCENE, .run = read_attribute},
+    {"ObjectBegin", IN_WORLD, NAME, .run = read_object_begin},
+    {"ObjectEnd", IN_WORLD, BARE, .run = read_object_end},
+    {"ObjectInstance", IN_WORLD, NAME, .run = read_object_instance},
+    {"Shape", IN_WORLD, PARAMETERS, .target = FOR_SHAPE, .run = read_shape},
+    {"Material", IN_WORLD, PARAMETERS, .target = FOR_MATERIAL, .run = read_material},
+    {"LightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_light_source},
+    {"AreaLightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_area_light_source},
 };
 enum { N_DIRECTIVES = (int)(sizeof directives / sizeof *directives) };
 
@@ -38,25 +53,12 @@ enum { N_DIRECTIVES = (int)(sizeof directives / sizeof *directives) };
 static const struct {
   const char *name, *advice;
 } unsupported[] = {
-    {"Accelerator", "take the line out: there is only one here"},
-    {"ActiveTransform", "there is no motion"},
-    {"Attribute", "give the parameters to each directive"},
-    {"CoordSysTransform", "write the transformation out"},
-    {"CoordinateSystem", "write the transformation out"},
-    {"Import", "put the file's text here"},
-    {"Include", "put the file's text here"},
     {"MakeNamedMaterial", "use Material before each shape"},
     {"MakeNamedMedium", "there are no media"},
     {"MediumInterface", "there are no media"},
     {"NamedMaterial", "use Material before each shape"},
-    {"ObjectBegin", "there are no instances: repeat the shapes"},
-    {"ObjectEnd", "there are no instances: repeat the shapes"},
-    {"ObjectInstance", "there are no instances: repeat the shapes"},
-    {"Option", "take the line out"},
     {"Texture", "there are no textures: use constant values"},
-    {"TransformBegin", "use AttributeBegin"},
-    {"TransformEnd", "use AttributeEnd"},
-    {"TransformTimes", "there is no motion"},
+    {"WorldEnd", "take it out: the file's end is the world's"},
 };
 enum { N_UNSUPPORTED = (int)(sizeof unsupported / sizeof *unsupported) };
 
@@ -134,6 +136,30 @@ static bool parse_name(struct reader *reader, struct arena *arena, struct call *
   return lexer_advance(&reader->lexer);
 }
 
+static bool parse_word(struct reader *reader, struct arena *arena, struct call *call) {
+  const struct token *token = &reader->lexer.token;
+  if (!expect(reader, call, TOKEN_WORD, "a word")) return false;
+  call->type = arena_string(arena, token->text, token->length);
+  call->type_place = token->place;
+  return lexer_advance(&reader->lexer);
+}
+
+// "name" value, where the value is a word, a string or a number, perhaps in brackets.
+static bool parse_name_value(struct reader *reader, struct arena *arena, struct call *call) {
+  struct lexer *lexer = &reader->lexer;
+  if (!parse_name(reader, arena, call)) return false;
+  bool bracket = lexer->token.kind == TOKEN_OPEN;
+  if (bracket && !lexer_advance(lexer)) return false;
+  enum token_kind kind = lexer->token.kind;
+  if (kind != TOKEN_WORD && kind != TOKEN_NUMBER && !expect(reader, call, TOKEN_STRING, "a value"))
+    return false;
+  call->value = kind == TOKEN_STRING ? lexer_string(&lexer->token, arena)
+                                     : arena_string(arena, lexer->token.text, lexer->token.length);
+  call->value_place = lexer->token.place;
+  if (!lexer_advance(lexer)) return false;
+  return !bracket || (expect(reader, call, TOKEN_CLOSE, "]") && lexer_advance(lexer));
+}
+
 static bool parse_call(struct reader *reader, const struct directive *directive,
                        struct arena *arena, struct call *call) {
   if (!lexer_advance(&reader->lexer)) return false;
@@ -144,14 +170,27 @@ static bool parse_call(struct reader *reader, const struct directive *directive,
     return parse_numbers(reader, call, directive->n_numbers);
   case MATRIX:
     return parse_matrix(reader, call);
+  case WORD:
+    return parse_word(reader, arena, call);
   case NAME:
     return parse_name(reader, arena, call);
+  case NAME_VALUE:
+    return parse_name_value(reader, arena, call);
   case PARAMETERS:
     break;
   }
   if (!parse_name(reader, arena, call)) return false;
   const char *title = arena_format(arena, "%s \"%s\"", call->name, call->type);
-  return params_parse(&reader->lexer, arena, title, call->place, &call->params);
+  if (!params_parse(&reader->lexer, arena, title, call->place, &call->params)) return false;
+  read_apply_defaults(reader, directive->target, arena, call);
+  return true;
+}
+
+// What an object's definition needs waits for the instances.
+static struct arena *arena_for(struct reader *reader, enum lifetime lifetime,
+                               struct arena *scratch) {
+  if (lifetime == WITH_SCENE) return reader->builder.arena;
+  return lifetime == WITH_READER || reader->in_object ? &reader->lists : scratch;
 }
 
 static bool read_directive(struct reader *reader, struct arena scratch) {
@@ -159,17 +198,21 @@ static bool read_directive(struct reader *reader, struct arena scratch) {
   struct call call = {.place = reader->lexer.token.place};
   if (!directive || !check_where(reader, directive, call.place)) return false;
   call.name = directive->name;
-  struct arena *arena = directive->keep ? reader->builder.arena : &scratch;
-  return parse_call(reader, directive, arena, &call) && directive->run(reader, &call);
+  struct arena *arena = arena_for(reader, directive->lifetime, &scratch);
+  if (!parse_call(reader, directive, arena, &call)) return false;
+  call.scratch = scratch;
+  return directive->run(reader, &call);
 }
 
-static bool read_directives(struct reader *reader, struct arena scratch) {
+bool read_directives(struct reader *reader, struct arena scratch) {
   if (!lexer_advance(&reader->lexer)) return false;
   while (reader->lexer.token.kind != TOKEN_END)
     if (!read_directive(reader, scratch)) return false;
-  if (reader->saved.count)
-    return problem_at(reader->problem, reader->saved.item[reader->saved.count - 1].begin,
-                      "this AttributeBegin has no AttributeEnd");
+  return true;
+}
+
+static bool read_main(struct reader *reader, struct arena scratch) {
+  if (!read_directives(reader, scratch) || !read_all_popped(reader, 0)) return false;
   if (reader->world_begin.line == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the file has no WorldBegin");
   return true;
@@ -180,14 +223,16 @@ bool scene_read_text(const char *path, const char *folder, struct text text, str
                      struct problem *problem) {
   *scene = (struct scene){.path = arena_string(arena, path, (ptrdiff_t)strlen(path)),
                           .hash = XXH64(text.data, (size_t)text.length, 0)};
+  struct reading file = {.path = scene->path};
   struct reader reader = {.lexer = lexer_begin(scene->path, text, problem),
                           .builder = {.arena = arena, .scene = scene, .folder = folder},
                           .problem = problem,
                           .lists = lists,
-                          .now = {.world_from_object = transform_identity()}};
+                          .reading = &file};
+  read_default_transform(&reader);
   read_default_options(&reader);
   read_default_material(&reader);
-  return read_directives(&reader, scratch) && scene_finish(&reader);
+  return read_main(&reader, scratch) && scene_finish(&reader);
 }
 
 // "scenes/box.pbrt" -> "scenes/", "box.pbrt" -> "".
@@ -200,8 +245,10 @@ bool scene_read(const char *path, struct arena *arena, struct scene *scene,
                 struct problem *problem) {
   struct arena own = arena_reserve(), scratch = arena_reserve(), lists = own;
   struct text text;
-  bool ok = file_read(path, &lists, &text, problem) &&
-            scene_read_text(path, folder_of(path, arena), text, arena, lists, scratch, scene, problem);
+  bool ok =
+      file_read(path, &lists, &text, problem) &&
+      (!gzip_is(text) || gzip_expand(path, text, &lists, &text, problem)) &&
+      scene_read_text(path, folder_of(path, arena), text, arena, lists, scratch, scene, problem);
   arena_release(scratch);
   arena_release(own);
   return ok;

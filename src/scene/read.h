@@ -22,10 +22,11 @@ struct scene_builder {
   struct transform world_from_object_end; // at the end of the motion
   bool moves;                         // the two differ
   bool reverse_orientation;           // at the directive
+  bool mirrored_instance;             // the shape is part of an ObjectInstance that mirrors
   bool emits;                         // shapes: an area light comes with this one
   bool textured;                      // set by input_read_*: a texture was taken
-  const char *folder;                 // of the file being read, to which others are relative; NULL:
-                                      // no other file may be read
+  const char *folder;                 // of the scene's file, to which others are relative, as in
+                                      // pbrt, whichever names them; NULL: no other may be read
   struct shape *shape;                // area lights: the emitter (a light that reads its uv sets
                                       // `detailed`); NULL otherwise
   struct named_textures {
@@ -49,6 +50,11 @@ bool scene_add_quadric(struct scene_builder *, struct params *, const struct qua
 // scene file, in the arena; they count in scene.hash.
 bool scene_read_file(struct scene_builder *, struct params *, const char *name,
                      const char *filename, struct arena *, struct text *);
+
+// The same for the reader itself: where a file of that name is, and its bytes.
+char *scene_path_of(const struct scene_builder *, const char *filename, struct arena *);
+bool scene_read_path(struct scene_builder *, const char *path, struct arena *, struct text *,
+                     struct problem *);
 
 // A spectrum texture or float texture named so far, NULL if none.
 const struct texture *scene_find_texture(const struct scene_builder *, bool spectrum,

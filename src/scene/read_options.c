@@ -44,7 +44,8 @@ void read_default_options(struct reader *reader) {
   scene->filter = (struct filter){.type = filter_find("box"), .radius = {0.5, 0.5}};
   scene->settings = (struct scene_settings){
       .filename = NULL, .max_depth = 5, .spp = 16, .radius = NAN, .alpha = NAN, .seed = -1};
-  reader->sampler_seed = -1;
+  reader->sampler_seed = reader->option_seed = -1;
+  reader->transform_times[END] = 1;
 }
 
 // Accepted where it has pbrt's default, which is all we do.
@@ -69,7 +70,13 @@ bool read_camera(struct reader *reader, struct call *call) {
   reader->screen_window = params_array(params, "float", "screenwindow", &count);
   if (reader->screen_window && count != 4)
     params_complain(params, "screenwindow", "screenwindow needs 4 numbers, has %td", count);
-  transform_invert(reader->now.world_from_object, &camera->world_from_camera);
+  struct transform world_from_camera[N_ENDS];
+  for (int end = START; end < N_ENDS; end++)
+    transform_invert(reader->now.world_from_object[end], &world_from_camera[end]);
+  read_name_coordinate_system(reader, "camera", world_from_camera);
+  if (read_is_moving(&reader->now))
+    return problem_at(reader->problem, call->place, "Camera: motion is not in this version");
+  camera->world_from_camera = world_from_camera[START];
   return params_finish(params);
 }
 
@@ -168,6 +175,12 @@ static void read_pbrt_integrator(struct params *params) {
   params_bool(params, "samplebsdf", true);
   if (params_bool(params, "regularize", false))
     params_complain(params, "regularize", "regularize must be false: it changes the image");
+  params_bool(params, "visualizestrategies", false); // bdpt: images beside the image
+  params_bool(params, "visualizeweights", false);
+  static const char *const mlt[] = {"bootstrapsamples", "chains", "mutationsperpixel"};
+  for (int i = 0; i < 3; i++) params_integer(params, mlt[i], 0);
+  params_float(params, "largestepprobability", 0);
+  params_float(params, "sigma", 0);
 }
 
 static void read_ranges(struct params *params, struct scene_settings *settings) {
@@ -214,6 +227,12 @@ bool read_integrator(struct reader *reader, struct call *call) {
   return params_finish(params);
 }
 
+// There is one here, and none can change the image.
+bool read_accelerator(struct reader *reader, struct call *call) {
+  (void)reader, (void)call;
+  return true;
+}
+
 bool read_color_space(struct reader *reader, struct call *call) {
   if (strcmp(call->type, "srgb") == 0) return true;
   return wrong_type(reader, call, "use \"srgb\"");
@@ -238,6 +257,8 @@ bool read_finish_options(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
   if (!check_window(reader)) return false;
   if (scene->settings.seed < 0) scene->settings.seed = reader->sampler_seed;
+  if (scene->settings.seed < 0) scene->settings.seed = reader->option_seed;
+  if (reader->no_pixel_jitter) scene->settings.centre = true;
   camera_set_window(&scene->camera);
   return true;
 }

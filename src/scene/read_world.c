@@ -61,23 +61,48 @@ static void add_pending_light(struct reader *reader, const struct light_type *ty
   *arena_push(&reader->lists, &reader->lights) =
       (struct pending_light){.type = type,
                              .params = *params,
-                             .world_from_object = reader->now.world_from_object,
+                             .world_from_object = reader->now.world_from_object[START],
                              .reverse_orientation = reader->now.reverse_orientation,
                              .shape = shape};
 }
 
+bool read_place_shape(struct reader *reader, const struct shape_type *type,
+                      const struct attributes *attributes, struct params *params, uint32_t *row) {
+  struct scene_builder *builder = &reader->builder;
+  if (read_is_moving(attributes))
+    return problem_at(reader->problem, params->place, "%s: motion is not in this version",
+                      params->directive);
+  builder->world_from_object = attributes->world_from_object[START];
+  builder->reverse_orientation = attributes->reverse_orientation;
+  builder->emits = attributes->area_light != NULL;
+  bool mirrored = transform_determinant(builder->world_from_object) < 0;
+  *row = build_begin_shape(builder, type, attributes->material,
+                           attributes->reverse_orientation != mirrored);
+  return type->read(builder, params) && params_finish(params);
+}
+
+// A definition's shapes wait for the instances.
+static bool add_to_object(struct reader *reader, const struct shape_type *type,
+                          const struct call *call) {
+  if (reader->now.area_light)
+    return problem_at(reader->problem, call->place,
+                      "%s: an area light in an object's definition is not possible",
+                      call->params.directive);
+  *arena_push(&reader->lists, &reader->in_object->shapes) =
+      (struct object_shape){type, call->params, reader->now};
+  return true;
+}
+
 bool read_shape(struct reader *reader, struct call *call) {
   const struct shape_type *type = find_shape(reader, call);
-  if (!type) return false;
   const struct attributes *now = &reader->now;
-  struct scene_builder *builder = &reader->builder;
-  builder->world_from_object = now->world_from_object;
-  builder->reverse_orientation = now->reverse_orientation;
-  builder->emits = now->area_light != NULL;
-  bool mirrored = transform_determinant(now->world_from_object) < 0;
-  uint32_t row =
-      build_begin_shape(builder, type, now->material, now->reverse_orientation != mirrored);
-  if (!type->read(builder, &call->params) || !params_finish(&call->params)) return false;
+  uint32_t row;
+  if (!type) return false;
+  if (reader->in_object) return add_to_object(reader, type, call);
+  if (now->area_light && read_is_moving(now))
+    return problem_at(reader->problem, call->place, "%s: an area light cannot move",
+                      call->params.directive);
+  if (!read_place_shape(reader, type, now, &call->params, &row)) return false;
   if (now->area_light)
     add_pending_light(reader, now->area_light->type, &now->area_light->params, row);
   return true;

@@ -4,7 +4,11 @@
 #define SCENE_READER_H
 
 #include "pbrt/lexer.h"
+#include "scene/names.h"
 #include "scene/read.h"
+
+// Ends of the interval in which things move (TransformTimes).
+enum { START, END, N_ENDS };
 
 // An AreaLightSource directive: the light of each shape that follows.
 struct area_light {
@@ -12,17 +16,57 @@ struct area_light {
   struct params params;
 };
 
+// What an Attribute directive gives defaults for.
+enum target { NO_TARGET, FOR_SHAPE, FOR_LIGHT, FOR_MATERIAL, FOR_MEDIUM, FOR_TEXTURE, N_TARGETS };
+
+// Parameters of directives to come, newest first.
+struct defaults {
+  const struct param *item;
+  int count;
+};
+
 // What AttributeBegin saves.
 struct attributes {
-  struct transform world_from_object; // the current transformation matrix
+  struct transform world_from_object[N_ENDS]; // the current transformation matrices
+  bool active[N_ENDS];                        // those that transformations change
   bool reverse_orientation;
   uint32_t material;
   const struct area_light *area_light; // or NULL
+  struct defaults defaults[N_TARGETS];
 };
 
+// By AttributeBegin or ObjectBegin.
 struct saved_attributes {
   struct attributes attributes;
+  const char *directive;
   struct place begin;
+};
+
+// A named coordinate system: what CoordSysTransform sets the current transformation to.
+struct coordinate_system {
+  struct transform world_from_object[N_ENDS];
+};
+
+// A shape as it waits in an object's definition.
+struct object_shape {
+  const struct shape_type *type;
+  struct params params;
+  struct attributes attributes;
+};
+
+struct object {
+  struct {
+    struct object_shape *item;
+    ptrdiff_t count, capacity;
+  } shapes;
+  bool used;
+};
+
+// An ObjectInstance directive.
+struct instance {
+  const char *name;
+  struct place place, name_place;
+  struct attributes attributes;
 };
 
 // A light to be read when the scene is complete.
@@ -38,12 +82,30 @@ struct reader {
   struct lexer lexer;
   struct scene_builder builder;
   struct problem *problem;
-  struct arena lists; // what lives as long as the reader
+  struct arena lists;            // what lives as long as the reader
+  const struct reading *reading; // the files that are open
+  int n_files;                   // read so far
   struct attributes now;
   struct {
     struct saved_attributes *item;
     ptrdiff_t count, capacity;
   } saved;
+  ptrdiff_t saved_outside; // those of the files that import this one
+  struct names coordinate_systems;
+  struct {
+    struct coordinate_system *item;
+    ptrdiff_t count, capacity;
+  } coordinate_system; // by number
+  struct names objects;
+  struct {
+    struct object *item;
+    ptrdiff_t count, capacity;
+  } object;                 // by number
+  struct object *in_object; // whose definition this is, or NULL
+  struct {
+    struct instance *item;
+    ptrdiff_t count, capacity;
+  } instances;
   struct {
     struct pending_light *item;
     ptrdiff_t count, capacity;
@@ -52,7 +114,15 @@ struct reader {
   struct place camera, film, sampler, integrator, filter, color_space; // line 0: not given
   const double *screen_window; // Camera's, to be compared with the default; or NULL
   double frame_aspect_ratio;   // 0: not given
-  int64_t sampler_seed;        // -1: not given
+  double transform_times[N_ENDS];
+  int64_t sampler_seed, option_seed; // -1: not given
+  bool no_pixel_jitter;              // Option
+};
+
+// A file that is being read; the one with the Include or Import is `outer`.
+struct reading {
+  const char *path;
+  const struct reading *outer;
 };
 
 // One directive as it stands in the file.
@@ -61,16 +131,23 @@ struct call {
   const char *name; // "Translate"
   const char *type; // `Shape "sphere"` -> "sphere"; NULL if it has none
   struct place type_place;
+  const char *value; // Option
+  struct place value_place;
   double number[16];    // Translate, Transform, ...
   struct params params; // of directives with a type
+  struct arena scratch; // free while the directive runs
 };
+
+// How long a directive's parameters are needed.
+enum lifetime { WHILE_READ, WITH_READER, WITH_SCENE };
 
 struct directive {
   const char *name;
   enum { ANYWHERE, BEFORE_WORLD, IN_WORLD } where;
-  enum { BARE, NUMBERS, MATRIX, NAME, PARAMETERS } form;
+  enum { BARE, NUMBERS, MATRIX, WORD, NAME, NAME_VALUE, PARAMETERS } form;
   int n_numbers;
-  bool keep; // its parameters are needed after it was read
+  enum lifetime lifetime;
+  enum target target; // whose defaults apply
   bool (*run)(struct reader *, struct call *);
 };
 
@@ -81,10 +158,22 @@ bool read_scale(struct reader *, struct call *);
 bool read_identity(struct reader *, struct call *);
 bool read_transform(struct reader *, struct call *);
 bool read_concat_transform(struct reader *, struct call *);
+bool read_active_transform(struct reader *, struct call *);
+bool read_transform_times(struct reader *, struct call *);
+bool read_coordinate_system(struct reader *, struct call *);
+bool read_coord_sys_transform(struct reader *, struct call *);
+
 bool read_attribute_begin(struct reader *, struct call *);
 bool read_attribute_end(struct reader *, struct call *);
+bool read_attribute(struct reader *, struct call *);
 bool read_reverse_orientation(struct reader *, struct call *);
 bool read_world_begin(struct reader *, struct call *);
+
+bool read_include(struct reader *, struct call *);
+bool read_import(struct reader *, struct call *);
+bool read_object_begin(struct reader *, struct call *);
+bool read_object_end(struct reader *, struct call *);
+bool read_object_instance(struct reader *, struct call *);
 
 bool read_camera(struct reader *, struct call *);
 bool read_film(struct reader *, struct call *);
@@ -92,6 +181,8 @@ bool read_pixel_filter(struct reader *, struct call *);
 bool read_sampler(struct reader *, struct call *);
 bool read_integrator(struct reader *, struct call *);
 bool read_color_space(struct reader *, struct call *);
+bool read_accelerator(struct reader *, struct call *);
+bool read_option(struct reader *, struct call *);
 
 bool read_shape(struct reader *, struct call *);
 bool read_material(struct reader *, struct call *);
@@ -100,9 +191,31 @@ bool read_area_light_source(struct reader *, struct call *);
 
 // What pbrt assumes where the file says nothing; then, at the end of the file, what could not be
 // checked before it.
+void read_default_transform(struct reader *);
 void read_default_options(struct reader *);
 bool read_finish_options(struct reader *);
 void read_default_material(struct reader *);
+
+// The directives of a file up to its end.
+bool read_directives(struct reader *, struct arena scratch);
+
+// Pushes and pops attributes; `begin` and `end` are the directives that do so.
+void read_push_attributes(struct reader *, const struct call *);
+bool read_pop_attributes(struct reader *, const struct call *, const char *begin);
+bool read_all_popped(struct reader *, ptrdiff_t outside);
+
+// Gives the call the defaults that Attribute set for its directive.
+void read_apply_defaults(const struct reader *, enum target, struct arena *, struct call *);
+
+bool read_is_moving(const struct attributes *);
+void read_name_coordinate_system(struct reader *, const char *name,
+                                 const struct transform world_from_object[N_ENDS]);
+
+// Adds a shape's primitives to the scene, with the attributes it had in the file.
+bool read_place_shape(struct reader *, const struct shape_type *, const struct attributes *,
+                      struct params *, uint32_t *row);
+// Adds the primitives of every ObjectInstance.
+bool read_instances(struct reader *);
 
 // scene_read on the file's text; `folder` (ending in /, or empty) is where the files it names are,
 // NULL: it may name none. `lists` and `scratch` are free again when it returns.
