@@ -25,4 +25,10 @@ struct mesh {
 bool mesh_read_ply(const char *file, struct text bytes, struct arena *, struct arena scratch,
                    struct mesh *, struct problem *);
 
+// Loop subdivision of the triangles as pbrt-v4's loopsubdiv, from positions alone: refined `levels`
+// (0 or more) times, then moved to the limit surface and given its normals. Every edge must belong
+// to at most two triangles, of equal orientation.
+bool mesh_subdivide(const struct mesh *, int levels, struct arena *, struct arena scratch,
+                    struct mesh *, struct problem *);
+
 #endif
