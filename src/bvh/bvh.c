@@ -39,11 +39,16 @@ static inline lanes_mask block_accepts(const struct shear *s, const struct bvh_b
 
 // triangle_plane
 static inline lanes block_plane(const struct ray *ray, const struct bvh_block *block) {
-  const lanes *n = block->n;
-  lanes x = lanes_from(block->vertex[0][0]) - ray->o.x;
-  lanes y = lanes_from(block->vertex[0][1]) - ray->o.y;
-  lanes z = lanes_from(block->vertex[0][2]) - ray->o.z;
-  return (n[0] * x + n[1] * y + n[2] * z) / (n[0] * ray->d.x + n[1] * ray->d.y + n[2] * ray->d.z);
+  lanes p[3][3];
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; i++)
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) p[i][k] = lanes_from(block->vertex[i][k]);
+  lanes ax = p[0][0] - p[2][0], ay = p[0][1] - p[2][1], az = p[0][2] - p[2][2];
+  lanes bx = p[1][0] - p[2][0], by = p[1][1] - p[2][1], bz = p[1][2] - p[2][2];
+  lanes nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
+  lanes x = p[0][0] - ray->o.x, y = p[0][1] - ray->o.y, z = p[0][2] - ray->o.z;
+  return (nx * x + ny * y + nz * z) / (nx * ray->d.x + ny * ray->d.y + nz * ray->d.z);
 }
 
 static inline void block_gather(const struct bvh_block *block, int lane, float vertex[3][3]) {

@@ -10,9 +10,18 @@ struct bvh; // bvh/tree.h
 
 struct bvh_options {
   int leaf_size; // most primitives in a leaf; 0: the default, and no tree for a few primitives
+  int threads;   // 0: as many as there are; the tree is the same bits for any number
+  int part_size; // a thread builds as many primitives alone; 0: the default (tests need less)
 };
 
 struct bvh *bvh_build(const struct scene *, struct bvh_options, struct arena *);
+
+// A copy of the tree for `scene`, which has the same primitives in other places: those of shapes
+// with moves[shape] (NULL: of all). To be refitted before it is used.
+struct bvh *bvh_clone(const struct bvh *, const struct scene *, const bool *moves, struct arena *);
+
+// Brings the boxes and vertices of a clone up to date with its scene.
+void bvh_refit(struct bvh *);
 
 // hits[j]: the closest hit of rays[j].
 void bvh_closest(const struct bvh *, const struct ray *rays, struct hit *hits, int n);

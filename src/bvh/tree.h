@@ -30,7 +30,6 @@ struct bvh_node {
 
 // Triangles of a leaf, side by side. Lanes without one hold NaN vertices: nothing accepts them.
 struct bvh_block {
-  lanes n[3];               // triangle_cross of the vertices
   lanes_float vertex[3][3]; // [corner][axis]
   uint32_t primitive[LANES];
 };
@@ -47,7 +46,18 @@ struct bvh {
   struct bvh_block *block;
   struct bvh_other *other;
   struct bvh_child root;
+  uint32_t n_nodes, n_blocks, n_others;
+  unsigned char *moving; // [n_nodes] bit of each child that a refit visits; NULL: all do
   struct bvh_statistics statistics;
 };
+
+// Room for the tree's arrays.
+void bvh_allocate(struct bvh *, uint32_t n_nodes, uint32_t n_blocks, uint32_t n_others,
+                  struct arena *);
+
+// Fills a block with the first LANES of `count` triangles.
+void bvh_block_set(const struct scene *, struct bvh_block *, const uint32_t *primitive,
+                   uint32_t count);
+void bvh_other_set(const struct scene *, struct bvh_other *, uint32_t primitive);
 
 #endif

@@ -1,5 +1,6 @@
 // The tree against the definition: the smallest (t, primitive) over all primitives, bit for bit, on
 // scenes and rays chosen to be hard; and closed meshes, which no ray may leave.
+#include "bvh/tree.h"
 #include "tests/unit/meshes.h"
 
 #include <setjmp.h>
@@ -271,6 +272,42 @@ static void one_leaf_of_everything_changes_nothing(void **state) {
     check_scene(i, (struct bvh_options){.leaf_size = 100000}, __func__);
 }
 
+static void parts_of_a_few_primitives_change_nothing(void **state) {
+  (void)state;
+  for (int i = 0; i < N_SCENES; i++)
+    check_scene(i, (struct bvh_options){.threads = 2, .part_size = 7}, __func__);
+}
+
+static void check_same_tree(const struct bvh *a, const struct bvh *b) {
+  struct bvh_statistics s = bvh_statistics(a), t = bvh_statistics(b);
+  assert_memory_equal(&s, &t, sizeof s);
+  assert_memory_equal(&a->root, &b->root, sizeof a->root);
+  assert_int_equal(a->n_nodes, b->n_nodes);
+  assert_int_equal(a->n_blocks, b->n_blocks);
+  assert_int_equal(a->n_others, b->n_others);
+  if (a->n_nodes) assert_memory_equal(a->node, b->node, a->n_nodes * sizeof *a->node);
+  if (a->n_blocks) assert_memory_equal(a->block, b->block, a->n_blocks * sizeof *a->block);
+  if (a->n_others) assert_memory_equal(a->other, b->other, a->n_others * sizeof *a->other);
+}
+
+static void the_tree_does_not_depend_on_the_number_of_threads(void **state) {
+  (void)state;
+  struct draw draw = draw_named(__func__);
+  for (int i = 0; i < N_SCENES; i++) {
+    struct mesh m = mesh_new(200, 1000);
+    hard_scenes[i].add(&m, &draw);
+    mesh_finish(&m);
+    static const int threads[] = {1, 2, 7};
+    struct bvh *bvh[3];
+    for (int k = 0; k < 3; k++) {
+      struct bvh_options options = {.threads = threads[k], .part_size = 7};
+      bvh[k] = bvh_build(&m.scene, options, &m.arena);
+      check_same_tree(bvh[0], bvh[k]);
+    }
+    mesh_release(&m);
+  }
+}
+
 // ---- watertight ----
 struct target {
   struct mesh *mesh;
@@ -297,7 +334,7 @@ static void check_closed(struct mesh *m, struct vec center, double half, int lea
   struct draw draw = draw_named(name);
   struct target target = {m, center, half};
   mesh_finish(m);
-  struct bvh *bvh = bvh_build(&m->scene, (struct bvh_options){leaf_size}, &m->arena);
+  struct bvh *bvh = bvh_build(&m->scene, (struct bvh_options){.leaf_size = leaf_size}, &m->arena);
   int leaks = 0;
   for (int batch = 0; batch < N / BATCH; batch++) {
     for (int j = 0; j < BATCH; j++) ray[j] = aimed_ray(&target, &draw, j);
@@ -394,6 +431,8 @@ int main(void) {
       cmocka_unit_test(the_tree_finds_what_brute_force_finds),
       cmocka_unit_test(leaves_of_one_primitive_change_nothing),
       cmocka_unit_test(one_leaf_of_everything_changes_nothing),
+      cmocka_unit_test(parts_of_a_few_primitives_change_nothing),
+      cmocka_unit_test(the_tree_does_not_depend_on_the_number_of_threads),
       cmocka_unit_test(no_ray_leaves_a_sphere_of_triangles),
       cmocka_unit_test(no_ray_leaves_a_box_of_triangles),
       cmocka_unit_test(no_ray_leaves_a_sphere_a_million_away),
