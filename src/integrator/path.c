@@ -125,7 +125,7 @@ static void path_step(void *data, uint64_t i, double *frame) {
     eye_rays(walk, measure->pixel + first, n, measure->footprint);
     double *out = frame + (long)first * walk->n_channels;
     for (walk->vertex = 0; walk->n > 0 && walk->vertex <= measure->depth; walk->vertex++) {
-      walk_trace(walk);
+      walk_trace_through(walk);
       if (walk->features.background) add_background(walk, out);
       walk_drop_escaped(walk);
       meet(walk, measure->depth, out);

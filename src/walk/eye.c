@@ -76,7 +76,7 @@ static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
 
 static void trace_batch(struct walk *walk, int depth, struct eye_point *point) {
   for (; walk->n > 0 && walk->vertex <= depth; walk->vertex++) {
-    walk_trace(walk);
+    walk_trace_through(walk);
     if (walk->features.background) add_background(walk, point);
     walk_drop_escaped(walk);
     walk_vertex_random(walk);

@@ -22,6 +22,14 @@ static void photons_reserve(struct photons *photons, int64_t more, struct arena 
   photons->capacity = capacity;
 }
 
+// What one call of photons_trace is about.
+struct pass {
+  const struct photon_pass *of;
+  const struct photon_filter *filter;
+  struct photons *photons;
+  struct arena *arena;
+};
+
 // Emission: one ray a path, with the flux that the choice of its light leaves it.
 static void emit(struct walk *walk) {
   const struct scene *scene = walk->scene;
@@ -40,52 +48,77 @@ static void emit(struct walk *walk) {
   }
 }
 
-static void store(const struct walk *walk, int j, struct vec p, struct photons *photons) {
+// Whether an eye point at this surface can scatter what arrives from wo. What a random material is
+// to the eye is not what it is to this photon, so there every photon is stored.
+static bool is_gathered(const struct scene *scene, const struct surface *surface,
+                        const struct bsdf *bsdf, struct vec wo) {
+  if (scene_material(scene, surface)->needs & MATERIAL_RANDOM) return true;
+  return bsdf->type && bsdf_delta_probability(bsdf, wo, TRANSPORT_IMPORTANCE) < 1;
+}
+
+static void store(const struct walk *walk, int j, const struct pass *pass,
+                  const struct surface *surface, const struct bsdf *bsdf) {
+  struct photons *photons = pass->photons;
+  const struct photon_filter *filter = pass->filter;
+  struct vec wi = vec_scale(walk->ray[j].d, -1);
+  if (walk->vertex < pass->of->first_vertex) return;
+  if (!is_gathered(walk->scene, surface, bsdf, wi)) return;
+  if (filter && !filter->keep(filter->data, surface->p)) return;
   int64_t at = photons->count++;
-  photons->position[at] = p;
-  photons->wi[at] = vec_scale(walk->ray[j].d, -1);
+  photons->position[at] = surface->p;
+  photons->wi[at] = wi;
   for (int c = 0; c < walk->n_channels; c++) photons->flux[c][at] = walk->throughput[c][j];
   photons->vertex[at] = walk->vertex < UINT16_MAX ? (uint16_t)walk->vertex : UINT16_MAX;
 }
 
-static bool has_smooth_part(const struct bsdf *bsdf, struct vec wo) {
-  return bsdf_delta_probability(bsdf, wo, TRANSPORT_IMPORTANCE) < 1;
+// A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
+// which then sees an opaque point with all of the light on it: those that pass are stored as well.
+static void store_passed(struct walk *walk, const struct pass *pass) {
+  const struct crossing *crossing = &walk->crossing;
+  photons_reserve(pass->photons, crossing->n_passed, pass->arena);
+  for (int k = 0; k < crossing->n_passed; k++) {
+    const struct surface *surface = &crossing->surface[k];
+    if (scene_material(walk->scene, surface)->type->passed) continue;
+    struct bsdf bsdf = surface_bsdf(walk->scene, surface, 0);
+    store(walk, crossing->passed[k], pass, surface, &bsdf);
+  }
 }
 
 // At every hit: store what can scatter towards an eye, then scatter.
-static void meet(struct walk *walk, const struct photon_pass *pass,
-                 const struct photon_filter *filter, struct photons *photons) {
-  bool stored = walk->vertex >= pass->first_vertex, last = walk->vertex + 1 >= pass->depth;
-  walk_vertex_random(walk);
+static void meet(struct walk *walk, const struct pass *pass) {
+  bool last = walk->vertex + 1 >= pass->of->depth;
   int alive = 0;
+  walk_vertex_random(walk);
+  photons_reserve(pass->photons, walk->n, pass->arena);
   for (int j = 0; j < walk->n; j++) {
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
     struct bsdf bsdf = walk_bsdf(walk, j, &surface);
-    if (!bsdf.type) continue;
-    bool seen = stored && has_smooth_part(&bsdf, vec_scale(walk->ray[j].d, -1));
-    if (seen && (!filter || filter->keep(filter->data, surface.p)))
-      store(walk, j, surface.p, photons);
-    if (!last && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
+    store(walk, j, pass, &surface, &bsdf);
+    if (!last && bsdf.type && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   walk->n = alive;
 }
 
-void photons_trace(struct walk *walk, const struct photon_pass *pass,
+void photons_trace(struct walk *walk, const struct photon_pass *of,
                    const struct photon_filter *filter, struct photons *photons,
                    struct arena *arena) {
+  struct pass pass = {of, filter, photons, arena};
   photons->count = 0;
   photons->n_channels = walk->n_channels;
   if (walk->scene->n_lights == 0) return;
-  for (uint64_t first = 0; first < pass->n_emitted; first += WALK_BATCH) {
-    uint64_t left = pass->n_emitted - first;
+  for (uint64_t first = 0; first < of->n_emitted; first += WALK_BATCH) {
+    uint64_t left = of->n_emitted - first;
     walk->n = left < WALK_BATCH ? (int)left : WALK_BATCH;
     for (int j = 0; j < walk->n; j++) walk->path[j] = first + (uint64_t)j;
     emit(walk);
-    for (walk->vertex = 0; walk->n > 0 && walk->vertex < pass->depth; walk->vertex++) {
+    for (walk->vertex = 0; walk->n > 0 && walk->vertex < of->depth; walk->vertex++) {
       walk_trace(walk);
+      while (walk->crossing.n > 0) {
+        walk_cross(walk);
+        store_passed(walk, &pass);
+      }
       walk_drop_escaped(walk);
-      photons_reserve(photons, walk->n, arena);
-      meet(walk, pass, filter, photons);
+      meet(walk, &pass);
     }
   }
 }

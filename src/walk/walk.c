@@ -19,6 +19,8 @@ static struct crossing crossing_new(struct arena *arena) {
       .ray = arena_new(arena, struct ray, WALK_BATCH),
       .hit = arena_new(arena, struct hit, WALK_BATCH),
       .slot = arena_new(arena, int, WALK_BATCH),
+      .passed = arena_new(arena, int, WALK_BATCH),
+      .surface = arena_new(arena, struct surface, WALK_BATCH),
       .path = arena_new(arena, uint64_t, WALK_BATCH),
       .u = {arena_new(arena, double, WALK_BATCH), arena_new(arena, double, WALK_BATCH)},
   };
@@ -79,51 +81,51 @@ struct ray walk_ray_beyond(const struct surface *surface, const struct ray *ray)
   return (struct ray){surface->p, ray->d, INFINITY, surface->primitive};
 }
 
-// Lists the paths that stand before a surface they may see through.
-static int list_crossings(struct walk *walk) {
+static void list_crossings(struct walk *walk) {
   struct crossing *crossing = &walk->crossing;
-  int n = 0;
+  crossing->n = crossing->number = 0;
   for (int j = 0; j < walk->n; j++)
-    if (walk_meets_see_through(walk->scene, walk->hit[j])) crossing->slot[n++] = j;
-  return n;
-}
-
-// Those that pass get a new ray and stay listed.
-static int pass_crossings(struct walk *walk, int n) {
-  struct crossing *crossing = &walk->crossing;
-  int passed = 0;
-  for (int k = 0; k < n; k++) {
-    int j = crossing->slot[k];
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    if (crossing->u[0][k] < surface_opacity(walk->scene, &surface)) continue;
-    walk->ray[j] = walk_ray_beyond(&surface, &walk->ray[j]);
-    crossing->ray[passed] = walk->ray[j];
-    crossing->slot[passed++] = j;
-  }
-  return passed;
-}
-
-static void trace_beyond(struct walk *walk) {
-  struct crossing *crossing = &walk->crossing;
-  int n = list_crossings(walk);
-  for (int number = 0; n > 0; number++) {
-    for (int k = 0; k < n; k++) crossing->path[k] = walk->path[crossing->slot[k]];
-    rng_fill(walk->key, walk->iteration, crossing->path, n,
-             pair_of_crossing(walk->vertex, number), crossing->u[0], crossing->u[1]);
-    int passed = pass_crossings(walk, n);
-    bvh_closest(walk->bvh, crossing->ray, crossing->hit, passed);
-    n = 0;
-    for (int k = 0; k < passed; k++) {
-      walk->hit[crossing->slot[k]] = crossing->hit[k];
-      if (walk_meets_see_through(walk->scene, crossing->hit[k]))
-        crossing->slot[n++] = crossing->slot[k];
-    }
-  }
+    if (walk_meets_see_through(walk->scene, walk->hit[j])) crossing->slot[crossing->n++] = j;
 }
 
 void walk_trace(struct walk *walk) {
   bvh_closest(walk->bvh, walk->ray, walk->hit, walk->n);
-  if (walk->features.see_through) trace_beyond(walk);
+  if (walk->features.see_through) list_crossings(walk);
+}
+
+static void decide_crossings(struct walk *walk) {
+  struct crossing *crossing = &walk->crossing;
+  crossing->n_passed = 0;
+  for (int k = 0; k < crossing->n; k++) {
+    int j = crossing->slot[k];
+    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+    if (crossing->u[0][k] < surface_opacity(walk->scene, &surface)) continue;
+    int to = crossing->n_passed++;
+    walk->ray[j] = walk_ray_beyond(&surface, &walk->ray[j]);
+    crossing->ray[to] = walk->ray[j];
+    crossing->surface[to] = surface;
+    crossing->passed[to] = j;
+  }
+}
+
+void walk_cross(struct walk *walk) {
+  struct crossing *crossing = &walk->crossing;
+  for (int k = 0; k < crossing->n; k++) crossing->path[k] = walk->path[crossing->slot[k]];
+  rng_fill(walk->key, walk->iteration, crossing->path, crossing->n,
+           pair_of_crossing(walk->vertex, crossing->number++), crossing->u[0], crossing->u[1]);
+  decide_crossings(walk);
+  bvh_closest(walk->bvh, crossing->ray, crossing->hit, crossing->n_passed);
+  crossing->n = 0;
+  for (int k = 0; k < crossing->n_passed; k++) {
+    int j = crossing->passed[k];
+    walk->hit[j] = crossing->hit[k];
+    if (walk_meets_see_through(walk->scene, walk->hit[j])) crossing->slot[crossing->n++] = j;
+  }
+}
+
+void walk_trace_through(struct walk *walk) {
+  walk_trace(walk);
+  while (walk->crossing.n > 0) walk_cross(walk);
 }
 
 void walk_drop_escaped(struct walk *walk) {

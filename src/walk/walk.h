@@ -39,10 +39,14 @@ struct walk {
     int *owner;
     int n;
   } shadow;
-  struct crossing { // scratch of walk_trace, only where the scene has see-through shapes
-    struct ray *ray;
+  struct crossing { // paths before a see-through surface; only where the scene has any
+    int n, number;   // of paths that stand before one; of the next crossing since `vertex`
+    int *slot;       // [n] which
+    int n_passed;    // of those the last walk_cross let pass
+    int *passed;     // [n_passed] which
+    struct surface *surface; // [n_passed] what they passed; the path's ray begins there now
+    struct ray *ray; // scratch
     struct hit *hit;
-    int *slot;
     uint64_t *path;
     double *u[2];
   } crossing;
@@ -56,8 +60,13 @@ void walk_random(struct walk *, int slot, uint32_t pair);
 // Starts segment j: ray and from.
 void walk_start(struct walk *, int j, struct ray);
 
-// Closest hits of all rays, past the surfaces that let them through.
+// Closest hits of all rays. Where the scene has see-through shapes the paths before one are listed
+// in `crossing`, and walk_cross lets each of them pass or not, until none is listed.
 void walk_trace(struct walk *);
+void walk_cross(struct walk *);
+
+// Both: past all surfaces that let the rays through.
+void walk_trace_through(struct walk *);
 
 // For shadow rays, which carry transmittance instead of a choice.
 bool walk_meets_see_through(const struct scene *, struct hit);
