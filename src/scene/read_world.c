@@ -32,9 +32,33 @@ static const struct shape_type *find_shape(struct reader *reader, const struct c
   return NULL;
 }
 
+// Materials of pbrt-v4 that this version has not, and those of pbrt-v3: what comes nearest.
+static const char *const other_materials[][2] = {
+    {"hair", "conductor"},
+    {"measured", "conductor"},
+    {"subsurface", "coateddiffuse"},
+    {"principled", "coateddiffuse"},
+    {"disney", "coateddiffuse"},
+    {"glass", "dielectric"},
+    {"matte", "diffuse"},
+    {"metal", "conductor"},
+    {"mirror", "conductor"},
+    {"plastic", "coateddiffuse"},
+    {"substrate", "coateddiffuse"},
+    {"translucent", "diffusetransmission"},
+    {"uber", "coateddiffuse"},
+};
+
 static const struct material_type *find_material(struct reader *reader, const struct call *call) {
   const char *names[MAX_NAMES];
   int n = 0;
+  for (size_t i = 0; i < sizeof other_materials / sizeof *other_materials; i++)
+    if (strcmp(other_materials[i][0], call->type) == 0) {
+      problem_at(reader->problem, call->type_place,
+                 "Material \"%s\" is not in this version; \"%s\" comes nearest", call->type,
+                 other_materials[i][1]);
+      return NULL;
+    }
   for (const struct material_type *const *type = material_types; *type && n < MAX_NAMES; type++) {
     if (strcmp((*type)->name, call->type) == 0) return *type;
     names[n++] = (*type)->name;

@@ -1,0 +1,68 @@
+// Materials that all tests of scattering loop over: each registered one, smooth, rough, extreme.
+#ifndef TESTS_MATERIAL_CASES_H
+#define TESTS_MATERIAL_CASES_H
+
+#include "tests/unit/scene_text.h"
+
+struct material_case {
+  const char *text;
+  bool gray;
+  double albedo; // the share of importance that is scattered, from everywhere; NAN: depends
+};
+
+static const struct material_case material_cases[] = {
+    {"'diffuse'", true, 0.5},
+    {"'diffuse' 'rgb reflectance' [.75 .25 0]", false, 0.75},
+    {"'diffuse' 'rgb reflectance' [0 0 0]", true, 0},
+    {"'diffusetransmission'", true, 0.5},
+    {"'diffusetransmission' 'rgb reflectance' [.5 .4 .2] 'rgb transmittance' [.3 .1 .4] "
+     "'float scale' .8",
+     false, 0.64},
+    {"'diffusetransmission' 'rgb reflectance' [0 0 0]", true, 0.25},
+    {"'conductor'", false, NAN},
+    {"'conductor' 'float roughness' .04 'spectrum eta' 'metal-Au-eta' 'spectrum k' 'metal-Au-k'",
+     false, NAN},
+    {"'conductor' 'float roughness' .3 'rgb reflectance' [.385 .385 .385]", true, NAN},
+    {"'conductor' 'float uroughness' .6 'float vroughness' .05 'bool remaproughness' false "
+     "'rgb eta' [1.4 .9 .6] 'rgb k' [7.7 6.6 5.3]",
+     false, NAN},
+    {"'dielectric'", true, 1},
+    {"'dielectric' 'float eta' 1 'float roughness' .3", true, 1},
+    {"'dielectric' 'spectrum eta' 'glass-BK7' 'float roughness' .02", true, NAN},
+    {"'dielectric' 'float eta' .6 'float roughness' .25", true, NAN},
+    {"'dielectric' 'float eta' 2.385 'float uroughness' .4 'float vroughness' .12 "
+     "'bool remaproughness' false",
+     true, NAN},
+    {"'thindielectric'", true, 1},
+    {"'thindielectric' 'float eta' 2.385", true, 1},
+};
+enum { N_MATERIAL_CASES = (int)(sizeof material_cases / sizeof *material_cases) };
+
+// A sphere of that material ('name' for "name").
+static inline struct scene material_scene(int i) {
+  char text[1024];
+  int n = snprintf(text, sizeof text, "WorldBegin LightSource 'point' Material %s Shape 'sphere'",
+                   material_cases[i].text);
+  assert_true(n > 0 && n < (int)sizeof text);
+  for (char *c = text; *c; c++)
+    if (*c == '\'') *c = '"';
+  return scene_of(text);
+}
+
+static inline const struct material *material_of(const struct scene *scene) {
+  return &scene->material[scene->shape[0].material];
+}
+
+// Its scattering where the frame is x, y, z.
+static inline struct bsdf material_bsdf(const struct scene *scene, double u) {
+  struct surface surface = {
+      .ng = vec(0, 0, 1), .ns = vec(0, 0, 1), .dpdu = vec(2, 0, 0), .uv = {0.385, 0.62}};
+  return surface_bsdf(scene, &surface, u);
+}
+
+// What a material that draws from bsdf.u promises is its mean; the tests of single values skip it.
+static inline bool material_is_random(const struct scene *scene) {
+  return material_of(scene)->needs & MATERIAL_RANDOM;
+}
+
+#endif
