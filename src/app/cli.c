@@ -33,6 +33,12 @@ static bool take_quiet(struct cli *cli, const char *text, struct problem *proble
   return true;
 }
 
+static bool take_lenient(struct cli *cli, const char *text, struct problem *problem) {
+  (void)text, (void)problem;
+  cli->options.lenient = true;
+  return true;
+}
+
 static bool take_no_skip(struct cli *cli, const char *text, struct problem *problem) {
   return skip_read(text, &cli->options.skip_off, problem);
 }
@@ -53,6 +59,7 @@ static const struct option options[] = {
     {"quiet", NULL, NULL, "no progress", take_quiet},
     {"no-skip", "NAMES", NULL, "do not skip: all, or names of 'photonlab list skips'",
      take_no_skip},
+    {"lenient", NULL, NULL, "leave displacement and normal maps out, and say so", take_lenient},
     {"quality", "NAME", NULL, "default or paper", take_quality},
     {"seed", "SEED", "seed", "a number, or a name that is hashed", NULL},
     {"integrator", "NAME", "integrator", "see 'photonlab list integrators'", NULL},

@@ -85,7 +85,7 @@ static int plot(struct cli *cli, struct problem *problem) {
 
 const struct command command_run = {"run", "EXPERIMENT",
                                     "runs an experiment file, into results/NAME or -o DIR",
-                                    "output threads quiet no-skip quality seed", run};
+                                    "output threads quiet no-skip lenient quality seed", run};
 
 const struct command command_fit = {
     "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv", "", fit};

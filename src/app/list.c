@@ -96,7 +96,8 @@ static int list(struct cli *cli, struct problem *problem) {
 
 static int info(struct cli *cli, struct problem *problem) {
   struct scene scene;
-  if (!scene_read(cli->argument, cli->arena, &scene, problem)) return 1;
+  struct scene_options options = {cli->options.lenient, stderr};
+  if (!scene_read_with(cli->argument, options, cli->arena, &scene, problem)) return 1;
   scene_info(&scene, stdout);
   return 0;
 }
@@ -110,7 +111,8 @@ const struct command command_list = {"list", "[WHAT]", "what is registered: laws
                                      list};
 
 const struct command command_info = {
-    "info", "SCENE", "what a scene holds and which features it lets us skip", "", info};
+    "info", "SCENE", "what a scene holds and which features it lets us skip", "lenient",
+    info};
 
 const struct command command_validate = {
     "validate", NULL, "checks radius laws, kernels and functions against theory's values", "",

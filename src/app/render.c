@@ -73,7 +73,8 @@ static bool output_can_be_written(const char *path, struct problem *problem) {
 static int render(struct cli *cli, struct problem *problem) {
   struct scene scene;
   struct cell cell;
-  if (!scene_read(cli->argument, cli->arena, &scene, problem)) return 1;
+  struct scene_options options = {cli->options.lenient, stderr};
+  if (!scene_read_with(cli->argument, options, cli->arena, &scene, problem)) return 1;
   const char *output = cli->output ? cli->output : scene.settings.filename;
   if (!output) return problem_set(problem, "say where the picture goes: -o FILE.exr"), 1;
   struct measurement measure;
@@ -96,5 +97,5 @@ static int render(struct cli *cli, struct problem *problem) {
 const struct command command_render = {
     "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
     "output integrator spp iterations photons radius alpha kernel law direct maxdepth pixel seed "
-    "threads quiet no-skip",
+    "threads quiet no-skip lenient",
     render};

@@ -12,7 +12,7 @@ static void note_asked(struct params *params, const char *name) {
   if (params->n_asked < PARAMS_MAX_ASKED) params->asked[params->n_asked++] = name;
 }
 
-static struct param *find(struct params *params, const char *name) {
+static struct param *find(const struct params *params, const char *name) {
   for (int i = 0; i < params->count; i++)
     if (strcmp(params->item[i].name, name) == 0) return &params->item[i];
   return NULL;
@@ -86,15 +86,18 @@ const struct param *params_any(struct params *params, const char *name) {
   return param;
 }
 
+struct place params_place(const struct params *params, const char *name) {
+  const struct param *param = find(params, name);
+  return param ? param->place : params->place;
+}
+
 bool params_complain(struct params *params, const char *name, const char *format, ...) {
   char text[sizeof params->problem->text];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  const struct param *param = find(params, name);
-  return problem_at(params->problem, param ? param->place : params->place, "%s: %s",
-                    params->directive, text);
+  return problem_at(params->problem, params_place(params, name), "%s: %s", params->directive, text);
 }
 
 // "; it reads a, b, c" or "; did you mean "a"?"

@@ -46,6 +46,8 @@ bool params_rgb(struct params *, const char *name, double rgb[3]); // false: abs
 const double *params_array(struct params *, const char *type, const char *name, ptrdiff_t *count);
 // The parameter of any type, taken; NULL if absent.
 const struct param *params_any(struct params *, const char *name);
+// Where the parameter is, or where the directive is if it is absent.
+struct place params_place(const struct params *, const char *name);
 // A reader's own complaint about a value it took (place of that parameter, else of the directive).
 bool params_complain(struct params *, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

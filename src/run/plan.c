@@ -38,7 +38,8 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
     if (strcmp(plan->scene[s].path, path) == 0) return &plan->scene[s];
   struct loaded_scene *loaded = &plan->scene[plan->n_scenes];
   loaded->path = path;
-  if (!scene_read(path, arena, &loaded->scene, problem)) return NULL;
+  struct scene_options options = {plan->options.lenient, stderr};
+  if (!scene_read_with(path, options, arena, &loaded->scene, problem)) return NULL;
   loaded->bvh = bvh_build(&loaded->scene, (struct bvh_options){0}, arena);
   plan->n_scenes++;
   return loaded;

@@ -12,6 +12,7 @@ struct run_options {
   int threads; // 0: all cores
   bool quiet;
   unsigned skip_off; // bits of enum skip
+  bool lenient;      // of scene_options
 };
 
 int plan_threads(const struct run_options *);

@@ -204,7 +204,8 @@ static bool list_infinite(struct reader *reader) {
 
 bool scene_finish(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
-  if (!read_finish_options(reader) || !read_instances(reader)) return false;
+  if (!read_finish_options(reader) || !read_check_materials(reader) || !read_instances(reader))
+    return false;
   if (scene->n_primitives == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
   fill_tables(&reader->builder);

@@ -44,23 +44,16 @@ static const struct directive directives[] = {
     {"ObjectInstance", IN_WORLD, NAME, .run = read_object_instance},
     {"Shape", IN_WORLD, PARAMETERS, .target = FOR_SHAPE, .run = read_shape},
     {"Material", IN_WORLD, PARAMETERS, .target = FOR_MATERIAL, .run = read_material},
+    {"MakeNamedMaterial", IN_WORLD, PARAMETERS, .target = FOR_MATERIAL,
+     .run = read_make_named_material},
+    {"NamedMaterial", IN_WORLD, NAME, .run = read_named_material},
+    {"Texture", IN_WORLD, TEXTURE, .target = FOR_TEXTURE, .run = read_texture},
+    {"MakeNamedMedium", ANYWHERE, PARAMETERS, .target = FOR_MEDIUM, .run = read_make_named_medium},
+    {"MediumInterface", ANYWHERE, NAMES, .run = read_medium_interface},
     {"LightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_light_source},
     {"AreaLightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_area_light_source},
 };
 enum { N_DIRECTIVES = (int)(sizeof directives / sizeof *directives) };
-
-// What pbrt-v4 knows and we do not, and what to do about it.
-static const struct {
-  const char *name, *advice;
-} unsupported[] = {
-    {"MakeNamedMaterial", "use Material before each shape"},
-    {"MakeNamedMedium", "there are no media"},
-    {"MediumInterface", "there are no media"},
-    {"NamedMaterial", "use Material before each shape"},
-    {"Texture", "there are no textures: use constant values"},
-    {"WorldEnd", "take it out: the file's end is the world's"},
-};
-enum { N_UNSUPPORTED = (int)(sizeof unsupported / sizeof *unsupported) };
 
 static bool token_is(const struct token *token, const char *name) {
   return (size_t)token->length == strlen(name) && memcmp(token->text, name, strlen(name)) == 0;
@@ -68,10 +61,9 @@ static bool token_is(const struct token *token, const char *name) {
 
 static bool unknown_directive(struct reader *reader) {
   const struct token *token = &reader->lexer.token;
-  for (int i = 0; i < N_UNSUPPORTED; i++)
-    if (token_is(token, unsupported[i].name))
-      return problem_at(reader->problem, token->place, "%s is not in this version; %s",
-                        unsupported[i].name, unsupported[i].advice);
+  if (token_is(token, "WorldEnd")) // of pbrt-v3
+    return problem_at(reader->problem, token->place,
+                      "WorldEnd: take it out, the file's end is enough");
   const char *names[N_DIRECTIVES];
   for (int i = 0; i < N_DIRECTIVES; i++) names[i] = directives[i].name;
   struct token_text text = lexer_describe(token);
@@ -160,6 +152,27 @@ static bool parse_name_value(struct reader *reader, struct arena *arena, struct 
   return !bracket || (expect(reader, call, TOKEN_CLOSE, "]") && lexer_advance(lexer));
 }
 
+// "name" or "name" "name".
+static bool parse_names(struct reader *reader, struct arena *arena, struct call *call) {
+  struct lexer *lexer = &reader->lexer;
+  if (!parse_name(reader, arena, call)) return false;
+  if (lexer->token.kind != TOKEN_STRING) return true;
+  call->value = lexer_string(&lexer->token, arena);
+  call->value_place = lexer->token.place;
+  return lexer_advance(lexer);
+}
+
+// "title" "kind", before what every directive with parameters has.
+static bool parse_texture(struct reader *reader, struct arena *arena, struct call *call) {
+  if (!parse_name(reader, arena, call)) return false;
+  call->title = call->type;
+  call->title_place = call->type_place;
+  if (!parse_name(reader, arena, call)) return false;
+  call->kind = call->type;
+  call->kind_place = call->type_place;
+  return true;
+}
+
 static bool parse_call(struct reader *reader, const struct directive *directive,
                        struct arena *arena, struct call *call) {
   if (!lexer_advance(&reader->lexer)) return false;
@@ -174,8 +187,13 @@ static bool parse_call(struct reader *reader, const struct directive *directive,
     return parse_word(reader, arena, call);
   case NAME:
     return parse_name(reader, arena, call);
+  case NAMES:
+    return parse_names(reader, arena, call);
   case NAME_VALUE:
     return parse_name_value(reader, arena, call);
+  case TEXTURE:
+    if (!parse_texture(reader, arena, call)) return false;
+    break;
   case PARAMETERS:
     break;
   }
@@ -218,21 +236,29 @@ static bool read_main(struct reader *reader, struct arena scratch) {
   return true;
 }
 
+// What is left of a reader is the scene.
+static bool read_all(struct reader *reader, const char *path, const char *folder, struct text text,
+                     struct arena scratch) {
+  struct scene *scene = reader->builder.scene;
+  *scene =
+      (struct scene){.path = arena_string(reader->builder.arena, path, (ptrdiff_t)strlen(path)),
+                     .hash = XXH64(text.data, (size_t)text.length, 0)};
+  struct reading file = {.path = scene->path};
+  reader->lexer = lexer_begin(scene->path, text, reader->problem);
+  reader->builder.folder = folder;
+  reader->reading = &file;
+  read_default_transform(reader);
+  read_default_options(reader);
+  read_default_material(reader);
+  return read_main(reader, scratch) && scene_finish(reader);
+}
+
 bool scene_read_text(const char *path, const char *folder, struct text text, struct arena *arena,
                      struct arena lists, struct arena scratch, struct scene *scene,
                      struct problem *problem) {
-  *scene = (struct scene){.path = arena_string(arena, path, (ptrdiff_t)strlen(path)),
-                          .hash = XXH64(text.data, (size_t)text.length, 0)};
-  struct reading file = {.path = scene->path};
-  struct reader reader = {.lexer = lexer_begin(scene->path, text, problem),
-                          .builder = {.arena = arena, .scene = scene, .folder = folder},
-                          .problem = problem,
-                          .lists = lists,
-                          .reading = &file};
-  read_default_transform(&reader);
-  read_default_options(&reader);
-  read_default_material(&reader);
-  return read_main(&reader, scratch) && scene_finish(&reader);
+  struct reader reader = {
+      .builder = {.arena = arena, .scene = scene}, .problem = problem, .lists = lists};
+  return read_all(&reader, path, folder, text, scratch);
 }
 
 // "scenes/box.pbrt" -> "scenes/", "box.pbrt" -> "".
@@ -241,15 +267,25 @@ static const char *folder_of(const char *path, struct arena *arena) {
   return arena_string(arena, path, slash ? slash + 1 - path : 0);
 }
 
-bool scene_read(const char *path, struct arena *arena, struct scene *scene,
-                struct problem *problem) {
+bool scene_read_with(const char *path, struct scene_options options, struct arena *arena,
+                     struct scene *scene, struct problem *problem) {
   struct arena own = arena_reserve(), scratch = arena_reserve(), lists = own;
   struct text text;
-  bool ok =
-      file_read(path, &lists, &text, problem) &&
-      (!gzip_is(text) || gzip_expand(path, text, &lists, &text, problem)) &&
-      scene_read_text(path, folder_of(path, arena), text, arena, lists, scratch, scene, problem);
+  bool ok = file_read(path, &lists, &text, problem) &&
+            (!gzip_is(text) || gzip_expand(path, text, &lists, &text, problem));
+  if (ok) {
+    struct reader reader = {.builder = {.arena = arena, .scene = scene},
+                            .problem = problem,
+                            .lists = lists,
+                            .options = options};
+    ok = read_all(&reader, path, folder_of(path, arena), text, scratch);
+  }
   arena_release(scratch);
   arena_release(own);
   return ok;
+}
+
+bool scene_read(const char *path, struct arena *arena, struct scene *scene,
+                struct problem *problem) {
+  return scene_read_with(path, (struct scene_options){0}, arena, scene, problem);
 }

@@ -77,8 +77,11 @@ static bool read_instance(struct reader *reader, const struct instance *instance
     return problem_at(reader->problem, instance->name_place, "unknown object \"%s\"%s",
                       instance->name, names_suggest(&reader->objects, instance->name).text);
   struct object *object = &reader->object.item[number];
+  reader->in_later_instance = object->used;
   object->used = true;
-  return place_object(reader, instance, object);
+  bool ok = place_object(reader, instance, object);
+  reader->in_later_instance = false;
+  return ok;
 }
 
 // Read as the others are, so that its errors are found, and forgotten.

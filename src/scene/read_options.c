@@ -57,7 +57,7 @@ static void only_default(struct params *params, const char *name, double value) 
 bool read_camera(struct reader *reader, struct call *call) {
   struct params *params = &call->params;
   struct camera *camera = &reader->builder.scene->camera;
-  if (!only_once(reader, call, &reader->camera)) return false;
+  if (!only_once(reader, call, &reader->camera) || !read_check_outside(reader, call)) return false;
   camera->type = find_camera(call->type);
   if (!camera->type) return wrong_type(reader, call, "use \"perspective\"");
   if (!camera->type->read(camera, params)) return false;

@@ -1,25 +1,10 @@
-// Directives after WorldBegin: shapes, materials, lights.
-#include "pbrt/suggest.h"
+// Directives after WorldBegin: shapes and lights.
 #include "scene/build.h"
 #include "scene/reader.h"
 
 #include <string.h>
 
 enum { MAX_NAMES = 64 };
-
-// `"name" is unknown; did you mean ..., or: known are ...`
-static bool unknown_type(struct reader *reader, const struct call *call, const char *const *names,
-                         int n) {
-  char list[256] = "";
-  size_t used = 0;
-  for (int i = 0; i < n && used < sizeof list; i++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
-  const char *nearest = suggest_name(call->type, names, n);
-  return problem_at(reader->problem, call->type_place,
-                    "%s \"%s\" is not in this version%s%s%s (known: %s)", call->name, call->type,
-                    nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                    nearest ? "\"?" : "", list);
-}
 
 static const struct shape_type *find_shape(struct reader *reader, const struct call *call) {
   const char *names[MAX_NAMES];
@@ -28,42 +13,7 @@ static const struct shape_type *find_shape(struct reader *reader, const struct c
     if (strcmp((*type)->name, call->type) == 0) return *type;
     names[n++] = (*type)->name;
   }
-  unknown_type(reader, call, names, n);
-  return NULL;
-}
-
-// Materials of pbrt-v4 that this version has not, and those of pbrt-v3: what comes nearest.
-static const char *const other_materials[][2] = {
-    {"hair", "conductor"},
-    {"measured", "conductor"},
-    {"subsurface", "coateddiffuse"},
-    {"principled", "coateddiffuse"},
-    {"disney", "coateddiffuse"},
-    {"glass", "dielectric"},
-    {"matte", "diffuse"},
-    {"metal", "conductor"},
-    {"mirror", "conductor"},
-    {"plastic", "coateddiffuse"},
-    {"substrate", "coateddiffuse"},
-    {"translucent", "diffusetransmission"},
-    {"uber", "coateddiffuse"},
-};
-
-static const struct material_type *find_material(struct reader *reader, const struct call *call) {
-  const char *names[MAX_NAMES];
-  int n = 0;
-  for (size_t i = 0; i < sizeof other_materials / sizeof *other_materials; i++)
-    if (strcmp(other_materials[i][0], call->type) == 0) {
-      problem_at(reader->problem, call->type_place,
-                 "Material \"%s\" is not in this version; \"%s\" comes nearest", call->type,
-                 other_materials[i][1]);
-      return NULL;
-    }
-  for (const struct material_type *const *type = material_types; *type && n < MAX_NAMES; type++) {
-    if (strcmp((*type)->name, call->type) == 0) return *type;
-    names[n++] = (*type)->name;
-  }
-  unknown_type(reader, call, names, n);
+  read_unknown_type(reader, call, names, n);
   return NULL;
 }
 
@@ -76,7 +26,7 @@ static const struct light_type *find_light(struct reader *reader, const struct c
     if (strcmp((*type)->name, call->type) == 0) return *type;
     names[n++] = (*type)->name;
   }
-  unknown_type(reader, call, names, n);
+  read_unknown_type(reader, call, names, n);
   return NULL;
 }
 
@@ -90,18 +40,42 @@ static void add_pending_light(struct reader *reader, const struct light_type *ty
                              .shape = shape};
 }
 
+// `float alpha` or `texture alpha` of any shape. As in pbrt a constant of 1 or more is opaque, and
+// nothing is seen of one of 0 or less.
+static void read_alpha(struct reader *reader, struct params *params, struct shape *shape) {
+  struct scene_builder *builder = &reader->builder;
+  if (!input_is_given(params, "alpha")) return;
+  struct input input = input_read_float(builder, params, "alpha", 1);
+  if (!input.texture && input.value[0] >= 1) return;
+  for (int c = 0; c < 3; c++)
+    if (!(input.value[c] >= 0)) input.value[c] = 0;
+  struct input *alpha = arena_new(builder->arena, struct input, 1);
+  *alpha = input;
+  shape->alpha = alpha;
+}
+
+static void set_builder(struct scene_builder *builder, const struct attributes *attributes) {
+  builder->world_from_object = attributes->world_from_object[START];
+  builder->world_from_object_end = attributes->world_from_object[END];
+  builder->moves = read_is_moving(attributes);
+  builder->reverse_orientation = attributes->reverse_orientation;
+  builder->emits = attributes->area_light != NULL;
+}
+
 bool read_place_shape(struct reader *reader, const struct shape_type *type,
                       const struct attributes *attributes, struct params *params, uint32_t *row) {
   struct scene_builder *builder = &reader->builder;
-  if (read_is_moving(attributes))
+  set_builder(builder, attributes);
+  if (builder->moves)
     return problem_at(reader->problem, params->place, "%s: motion is not in this version",
                       params->directive);
-  builder->world_from_object = attributes->world_from_object[START];
-  builder->reverse_orientation = attributes->reverse_orientation;
-  builder->emits = attributes->area_light != NULL;
+  if (!read_check_media(reader, attributes, params)) return false;
   bool mirrored = transform_determinant(builder->world_from_object) < 0;
   *row = build_begin_shape(builder, type, attributes->material,
                            attributes->reverse_orientation != mirrored);
+  read_alpha(reader, params, &builder->scene->shape[*row]);
+  read_leave_out(reader, params, "displacement");
+  read_leave_out(reader, params, "displacement.edgelength");
   return type->read(builder, params) && params_finish(params);
 }
 
@@ -132,38 +106,9 @@ bool read_shape(struct reader *reader, struct call *call) {
   return true;
 }
 
-static void add_material(struct reader *reader, struct material material) {
-  struct scene *scene = reader->builder.scene;
-  scene->material = build_grow(reader->builder.arena, scene->material, scene->n_materials, 1,
-                               sizeof *scene->material);
-  reader->now.material = scene->n_materials;
-  scene->material[scene->n_materials++] = material;
-}
-
-bool read_material(struct reader *reader, struct call *call) {
-  struct material material = {.type = find_material(reader, call)};
-  if (!material.type) return false;
-  struct scene_builder *builder = &reader->builder;
-  builder->textured = false;
-  if (!material.type->read(builder, &call->params, &material) || !params_finish(&call->params))
-    return false;
-  if (builder->textured) material.needs |= MATERIAL_DETAIL;
-  add_material(reader, material);
-  return true;
-}
-
-// pbrt's: diffuse with reflectance 0.5, which is what "diffuse" without parameters is.
-void read_default_material(struct reader *reader) {
-  extern const struct material_type material_diffuse;
-  struct params none = {.directive = "the default material", .problem = reader->problem};
-  struct material material = {.type = &material_diffuse};
-  material.type->read(&reader->builder, &none, &material);
-  add_material(reader, material);
-}
-
 bool read_light_source(struct reader *reader, struct call *call) {
   const struct light_type *type = find_light(reader, call, false);
-  if (!type) return false;
+  if (!type || !read_check_outside(reader, call)) return false;
   add_pending_light(reader, type, &call->params, 0);
   return true;
 }

@@ -32,6 +32,7 @@ struct attributes {
   bool reverse_orientation;
   uint32_t material;
   const struct area_light *area_light; // or NULL
+  const char *inside, *outside;        // media: a name, or NULL or "" for none
   struct defaults defaults[N_TARGETS];
 };
 
@@ -69,6 +70,13 @@ struct instance {
   struct attributes attributes;
 };
 
+// A material named so far, made or not.
+struct material_name {
+  uint32_t row;
+  bool is_made;
+  struct place place; // where it was first named
+};
+
 // A light to be read when the scene is complete.
 struct pending_light {
   const struct light_type *type;
@@ -82,6 +90,7 @@ struct reader {
   struct lexer lexer;
   struct scene_builder builder;
   struct problem *problem;
+  struct scene_options options;
   struct arena lists;            // what lives as long as the reader
   const struct reading *reading; // the files that are open
   int n_files;                   // read so far
@@ -96,11 +105,18 @@ struct reader {
     struct coordinate_system *item;
     ptrdiff_t count, capacity;
   } coordinate_system; // by number
+  struct names material_names;
+  struct {
+    struct material_name *item;
+    ptrdiff_t count, capacity;
+  } material_name; // by number
+  struct names float_texture_names, spectrum_texture_names, media;
   struct names objects;
   struct {
     struct object *item;
     ptrdiff_t count, capacity;
   } object;                 // by number
+  bool in_later_instance;   // of an object, whose shapes were read before
   struct object *in_object; // whose definition this is, or NULL
   struct {
     struct instance *item;
@@ -131,8 +147,10 @@ struct call {
   const char *name; // "Translate"
   const char *type; // `Shape "sphere"` -> "sphere"; NULL if it has none
   struct place type_place;
-  const char *value; // Option
+  const char *value; // Option; MediumInterface's second name or NULL
   struct place value_place;
+  const char *title, *kind; // Texture "title" "kind" "type"
+  struct place title_place, kind_place;
   double number[16];    // Translate, Transform, ...
   struct params params; // of directives with a type
   struct arena scratch; // free while the directive runs
@@ -144,7 +162,7 @@ enum lifetime { WHILE_READ, WITH_READER, WITH_SCENE };
 struct directive {
   const char *name;
   enum { ANYWHERE, BEFORE_WORLD, IN_WORLD } where;
-  enum { BARE, NUMBERS, MATRIX, WORD, NAME, NAME_VALUE, PARAMETERS } form;
+  enum { BARE, NUMBERS, MATRIX, WORD, NAME, NAMES, NAME_VALUE, PARAMETERS, TEXTURE } form;
   int n_numbers;
   enum lifetime lifetime;
   enum target target; // whose defaults apply
@@ -186,6 +204,11 @@ bool read_option(struct reader *, struct call *);
 
 bool read_shape(struct reader *, struct call *);
 bool read_material(struct reader *, struct call *);
+bool read_named_material(struct reader *, struct call *);
+bool read_make_named_material(struct reader *, struct call *);
+bool read_texture(struct reader *, struct call *);
+bool read_make_named_medium(struct reader *, struct call *);
+bool read_medium_interface(struct reader *, struct call *);
 bool read_light_source(struct reader *, struct call *);
 bool read_area_light_source(struct reader *, struct call *);
 
@@ -206,6 +229,19 @@ bool read_all_popped(struct reader *, ptrdiff_t outside);
 
 // Gives the call the defaults that Attribute set for its directive.
 void read_apply_defaults(const struct reader *, enum target, struct arena *, struct call *);
+
+// False: the shape has a medium on one side (problem set); the camera or light is within one.
+bool read_check_media(struct reader *, const struct attributes *, const struct params *);
+bool read_check_outside(struct reader *, const struct call *);
+
+// A parameter that changes the image and that we do not know: refused, or left out if so asked.
+void read_leave_out(struct reader *, struct params *, const char *name);
+
+// `Shape "x" is not in this version` and what is.
+bool read_unknown_type(struct reader *, const struct call *, const char *const *names, int n);
+
+// Whether every material that was named was made.
+bool read_check_materials(struct reader *);
 
 bool read_is_moving(const struct attributes *);
 void read_name_coordinate_system(struct reader *, const char *name,

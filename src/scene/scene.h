@@ -16,6 +16,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define LIGHT_NONE UINT32_MAX
 #define ROW_NONE UINT32_MAX
@@ -261,6 +262,13 @@ struct scene {
 
 // Reads a pbrt-v4 file (the subset of README) and everything in it.
 bool scene_read(const char *path, struct arena *, struct scene *, struct problem *);
+
+struct scene_options {
+  bool lenient; // displacement and normal maps are left out instead of refused
+  FILE *notes;  // what was left out is said here, a line each; NULL: nowhere
+};
+bool scene_read_with(const char *path, struct scene_options, struct arena *, struct scene *,
+                     struct problem *);
 
 // The surface a hit of this ray found.
 struct surface scene_surface(const struct scene *, const struct ray *, struct hit);

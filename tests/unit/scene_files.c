@@ -127,6 +127,26 @@ static void compressed_files_are_read(void **state) {
   assert_problem("main.pbrt.gz", "main.pbrt.gz:1:12: ", "a damaged gzip file");
 }
 
+static void what_is_left_out_leniently_is_said(void **state) {
+  (void)state;
+  put("main.pbrt",
+      "WorldBegin Material \"diffuse\" \"string normalmap\" \"n.png\"\n" TRIANGLE
+      "Attribute \"material\" \"texture displacement\" \"bumps\" Material \"diffuse\"");
+  struct arena keep = test_memory()->keep;
+  struct scene scene;
+  struct problem problem = {{0}};
+  char said[512] = "", wanted[512];
+  FILE *notes = fmemopen(said, sizeof said, "w");
+  struct scene_options options = {true, notes};
+  assert_true(scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem));
+  fclose(notes);
+  snprintf(wanted, sizeof wanted,
+           "%1$s:1:31: Material \"diffuse\": \"normalmap\" is left out\n"
+           "%1$s:3:22: Material \"diffuse\": \"displacement\" is left out\n",
+           path_of("main.pbrt"));
+  assert_string_equal(said, wanted);
+}
+
 static int make_folder(void **state) {
   (void)state;
   if (!mkdtemp(folder)) die("cannot make %s", folder);
@@ -151,6 +171,7 @@ int main(void) {
       cmocka_unit_test(a_file_that_includes_itself_is_a_problem),
       cmocka_unit_test(the_hash_is_of_all_files_in_order),
       cmocka_unit_test(compressed_files_are_read),
+      cmocka_unit_test(what_is_left_out_leniently_is_said),
   };
   return cmocka_run_group_tests_name("scene_files", tests, make_folder, remove_folder);
 }

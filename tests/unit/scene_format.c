@@ -178,6 +178,39 @@ static void a_mirrored_instance_turns_no_normal_over(void **state) {
   }
 }
 
+// ---- materials, media ----
+
+static void a_named_material_may_be_made_after_its_use(void **state) {
+  (void)state;
+  struct scene scene =
+      scene_of(W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+                 "AttributeBegin NamedMaterial \"b\"\n" SPHERE "NamedMaterial \"a\"\n" SPHERE
+                 "Attribute \"material\" \"rgb reflectance\" [.25 .25 .25]\n"
+                 "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" AttributeEnd\n" SPHERE
+                 "NamedMaterial \"b\"\n" SPHERE);
+  static const double wanted[] = {0.25, 0, 0.5, 0.25};
+  for (uint32_t k = 0; k < 4; k++)
+    assert_true(fabs(reflectance_of(&scene, k) - wanted[k]) <= 1e-15);
+}
+
+static void alpha_belongs_to_any_shape(void **state) {
+  (void)state;
+  struct scene scene = scene_of(
+      W "Shape \"sphere\" \"float alpha\" .375 Attribute \"shape\" \"float alpha\" -.5\n" SPHERE
+        "Attribute \"shape\" \"float alpha\" 1.5\n" TRIANGLE);
+  assert_true(scene.shape[0].alpha->value[0] == 0.375 && scene.shape[0].see_through);
+  assert_true(scene.shape[1].alpha->value[0] == 0);
+  assert_true(!scene.shape[2].alpha && !scene.shape[2].see_through);
+}
+
+static void media_that_nothing_is_in_are_accepted(void **state) {
+  (void)state;
+  scene_of(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" \"milk\"\n" W
+      "MediumInterface \"fog\" \"fog\"\n" SPHERE "MediumInterface \"fog\" MediumInterface \"\"\n"
+      "LightSource \"point\"\n" SPHERE);
+}
+
 // ---- Option, Accelerator ----
 
 static void options_that_cannot_change_the_image_are_accepted(void **state) {
@@ -217,6 +250,9 @@ int main(void) {
       cmocka_unit_test(a_definition_has_its_own_attributes_and_costs_nothing_unused),
       cmocka_unit_test(an_object_may_be_defined_after_its_use),
       cmocka_unit_test(a_mirrored_instance_turns_no_normal_over),
+      cmocka_unit_test(a_named_material_may_be_made_after_its_use),
+      cmocka_unit_test(alpha_belongs_to_any_shape),
+      cmocka_unit_test(media_that_nothing_is_in_are_accepted),
       cmocka_unit_test(options_that_cannot_change_the_image_are_accepted),
       cmocka_unit_test(options_that_change_the_image_are_honoured),
   };

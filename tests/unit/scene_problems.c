@@ -4,6 +4,7 @@
 #define LIGHT "LightSource \"point\"\n"
 #define SPHERE "Shape \"sphere\"\n"
 #define W "WorldBegin\n"
+#define FOG "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] "
 
 static const struct {
@@ -27,7 +28,6 @@ static const struct {
     // directives
     {W "Shpae \"sphere\"", 2, 1, "did you mean Shape?"},
     {W "Frobnicate", 2, 1, "unknown directive Frobnicate"},
-    {W "  MakeNamedMedium \"a\"", 2, 3, "not in this version"},
     {W "WorldEnd", 2, 1, "take it out"},
     {W "Include \"no-such.pbrt\"", 2, 1, "Include: no-such.pbrt: cannot open it"},
     {W "Include no-such.pbrt", 2, 9, "expected a name in quotes"},
@@ -78,6 +78,36 @@ static const struct {
     {W "AttributeEnd", 2, 1, "AttributeEnd without AttributeBegin"},
     {W "AttributeBegin\n AttributeBegin " SPHERE "AttributeEnd\n" LIGHT, 2, 1,
      "has no AttributeEnd"},
+    // materials, textures, media
+    {W "NamedMaterial \"a\"\n" SPHERE, 2, 15, "unknown material \"a\"; there are none yet"},
+    {W "NamedMaterial \"wod\" MakeNamedMaterial \"wood\" \"string type\" \"diffuse\"\n" SPHERE, 2,
+     15, "did you mean \"wood\"?"},
+    {W "MakeNamedMaterial \"a\"", 2, 1, "\"string type\" is missing"},
+    {W "MakeNamedMaterial \"a\" \"float type\" 1", 2, 23, "must be of type string"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"difuse\"", 2, 23, "did you mean \"diffuse\"?"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\"", 3, 19,
+     "already defined"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"float eta\" 2", 2, 47,
+     "does not read a parameter \"eta\""},
+    {W "Material \"diffuse\" \"texture displacement\" \"d\"", 2, 20, "--lenient leaves it out"},
+    {W "Material \"diffuse\" \"string normalmap\" \"n.png\"", 2, 20, "--lenient leaves it out"},
+    {W "Shape \"sphere\" \"texture displacement\" \"d\"", 2, 16, "--lenient leaves it out"},
+    {W "Texture \"a\" \"color\" \"constant\"", 2, 13, "\"float\" or \"spectrum\", not \"color\""},
+    {W "Texture \"a\" \"float\"", 2, 20, "expected a name in quotes"},
+    {W "Texture \"a\" \"float\" \"imagmap\"", 2, 21, "not in this version"},
+    {W "Shape \"sphere\" \"texture alpha\" \"a\"", 2, 16, "there is no texture \"a\""},
+    {W "Shape \"sphere\" \"rgb alpha\" [1 1 1]", 2, 16, "must be of type float"},
+    {W "MakeNamedMedium \"a\"", 2, 1, "\"string type\" is missing"},
+    {W "MakeNamedMedium \"a\" \"string type\" \"fog\"", 2, 21, "unknown medium \"fog\""},
+    {W "MakeNamedMedium \"a\" \"string type\" \"cloud\"\nMakeNamedMedium \"a\"", 3, 17,
+     "already defined"},
+    {W FOG "MediumInterface \"fgo\" \"\"\n" SPHERE, 4, 1, "did you mean \"fog\"?"},
+    {W FOG "MediumInterface \"fog\" \"\"\n" SPHERE, 4, 1,
+     "participating media are not in this version, and \"fog\" is inside it"},
+    {W FOG "MediumInterface \"\" \"fog\"\n" SPHERE, 4, 1, "\"fog\" is outside it"},
+    {W FOG "MediumInterface \"fog\"\n" LIGHT, 4, 1, "\"fog\" is around it"},
+    {FOG "MediumInterface \"fog\"\n Camera \"perspective\"", 3, 2, "\"fog\" is around it"},
+    // the order of things
     {W "TransformBegin", 2, 1, "this TransformBegin has no TransformEnd"},
     {W "ObjectBegin \"a\"\n AttributeBegin\n ObjectEnd", 4, 2,
      "ObjectEnd: the AttributeBegin in line 3 is to be ended first"},
@@ -92,8 +122,8 @@ static const struct {
     {W "AreaLightSource \"diffuse\" ObjectBegin \"a\"\n" SPHERE, 3, 1, "area light in an object"},
     {W "ObjectBegin \"a\" Shape \"sphere\" \"float radius\" -1 ObjectEnd\n" SPHERE, 2, 32,
      "radius must be positive"},
-    {W "Scale 1e-60 1e-60 1e-60\nObjectBegin \"a\" " SPHERE "ObjectEnd\n ObjectInstance \"a\"", 5, 2,
-     "overflows or flattens"},
+    {W "Scale 1e-60 1e-60 1e-60\nObjectBegin \"a\" " SPHERE "ObjectEnd\n ObjectInstance \"a\"", 5,
+     2, "overflows or flattens"},
     {W "ActiveTransform EndTime Translate 1 0 0 AreaLightSource \"diffuse\"\n" SPHERE, 3, 1,
      "an area light cannot move"},
     {W "Attribute \"shapes\" \"float radius\" 1", 2, 11, "did you mean shape?"},
