@@ -4,12 +4,6 @@
 
 #include <string.h>
 
-static const char *const use_limits[] = {
-    [SPECTRUM_ALBEDO] = "must be in [0, 1]",
-    [SPECTRUM_UNBOUNDED] = "must not be negative",
-    [SPECTRUM_ILLUMINANT] = "must not be negative",
-};
-
 bool input_is_given(const struct params *params, const char *name) {
   for (int i = 0; i < params->count; i++)
     if (!strcmp(params->item[i].name, name)) return true;
@@ -79,23 +73,6 @@ struct input input_read_float(struct scene_builder *builder, struct params *para
     return input_texture(builder, false, params, name, param);
   double value = params_float(params, name, fallback);
   return (struct input){.value = {value, value, value}};
-}
-
-static void check_use(struct params *params, const char *name, enum spectrum_use use,
-                      const double rgb[3]) {
-  for (int c = 0; c < 3; c++)
-    if (!(rgb[c] >= 0 && (use != SPECTRUM_ALBEDO || rgb[c] <= 1))) {
-      params_complain(params, name, "\"%s\" %s, and has %g", name, use_limits[use], rgb[c]);
-      return;
-    }
-}
-
-bool spectrum_read(struct scene_builder *builder, struct params *params, const char *name,
-                   enum spectrum_use use, double rgb[3]) {
-  (void)builder;
-  if (!params_rgb(params, name, rgb)) return false;
-  check_use(params, name, use, rgb);
-  return true;
 }
 
 struct input input_read_spectrum(struct scene_builder *builder, struct params *params,

@@ -63,5 +63,12 @@ bool input_is_given(const struct params *, const char *name);
 // A spectrum that cannot be a texture (lights): rgb, a named or sampled spectrum, blackbody.
 bool spectrum_read(struct scene_builder *, struct params *, const char *name, enum spectrum_use,
                    double rgb[3]);
+// The eta and k of a metal, which are converted together where both are sampled. False: neither is
+// there.
+bool spectrum_read_metal(struct scene_builder *, struct params *, const char *eta_name,
+                         const char *k_name, double eta[3], double k[3]);
+// An index of refraction given as a spectrum (`"spectrum eta" "glass-BK7"`): one number. False: it
+// is not there, or not a spectrum.
+bool spectrum_read_index(struct scene_builder *, struct params *, const char *name, double *eta);
 
 #endif

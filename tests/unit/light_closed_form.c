@@ -232,6 +232,8 @@ static void test_nee_agrees(void **state) {
       "LightSource \"beam\" \"point3 from\" [1 2 3] \"point3 to\" [0 0 0] \"string profile\" "
       "\"quadratic\" \"float radius\" 3" LIGHT_PLANE,
       GRATING,
+      "LightSource \"spot\" \"point3 from\" [0.2 0.1 1.3] \"float coneangle\" 70 \"point3 to\" "
+      "[0 0 0] \"float conedeltaangle\" 50" LIGHT_PLANE,
   };
   for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
     struct scene scene = light_scene(lights[i], &arena);
@@ -274,6 +276,34 @@ static void test_clear_radius(void **state) {
   // The plane n through the point 1.3 below the light's horizon meets it 1.3 / 0.6 away.
   assert_near(clear_radius(LAMBERTIAN, vec(0.5, 0, 0), vec(0.6, 0, 0.8)), 1.3 / 0.6, 1e-14);
   assert_true(clear_radius(DISC, vec(0.5, 0, 0), up) == INFINITY);
+  // Across its cone, 20 and 25 degrees: 2 sin 20 on the axis; behind the light, the light itself.
+  const char *spot = "LightSource \"spot\" \"point3 from\" [0 0 2] \"point3 to\" [0 0 0] "
+                     "\"float coneangle\" 25" LIGHT_PLANE;
+  assert_near(clear_radius(spot, vec(0, 0, 0), up), 2 * sin(20 * pi / 180), 1e-14);
+  assert_near(clear_radius(spot, vec(2, 0, 0), up), sqrt(8) * sin(20 * pi / 180), 1e-14);
+  assert_near(clear_radius(spot, vec(0, 0, 5), up), 3, 1e-14);
+}
+
+// Smoothstep in the cosine between 20 and 25 degrees: half of it in the middle.
+static void test_spot(void **state) {
+  (void)state;
+  struct scene scene = light_scene("LightSource \"spot\" \"point3 from\" [0 0 2] \"point3 to\" "
+                                   "[0 0 0] \"float coneangle\" 25 \"rgb I\" [3 3 3]" LIGHT_PLANE,
+                                   &arena);
+  double start = cos(20 * pi / 180), end = cos(25 * pi / 180);
+  const struct {
+    double cosine, profile;
+  } at[] = {{1, 1},
+            {start + 1e-9, 1},
+            {(start + end) / 2, 0.5},
+            {0.75 * end + 0.25 * start, 5. / 32},
+            {end - 1e-9, 0},
+            {-1, 0}};
+  for (int k = 0; k < 6; k++) {
+    double sine = sqrt(1 - at[k].cosine * at[k].cosine);
+    struct vec p = vec(1.7 * sine, 0, 2 - 1.7 * at[k].cosine), n = vec(-sine, 0, at[k].cosine);
+    assert_near(light_irradiance(&scene, p, n), 3 * at[k].profile / (1.7 * 1.7), 1e-13);
+  }
 }
 
 int main(void) {
@@ -298,6 +328,7 @@ int main(void) {
        NULL, NULL, NULL},
       {"next-event estimation gives the closed form of every delta light", test_nee_agrees, NULL,
        NULL, NULL},
+      {"a spot's edge is a smoothstep of the cosine", test_spot, NULL, NULL, NULL},
       {"the clear radius ends at the nearest kink", test_clear_radius, NULL, NULL, NULL},
   };
   return cmocka_run_group_tests_name("light_closed_form", tests, NULL, NULL);

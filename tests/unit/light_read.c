@@ -30,6 +30,13 @@ static void test_power(void **state) {
        {3.5 / 0x1.921fb54442d18p+1, 7 / 0x1.921fb54442d18p+1, 10.5 / 0x1.921fb54442d18p+1}},
       {"LightSource \"point\" \"string emission\" \"lambertian\" \"rgb I\" [3 3 3]" LIGHT_PLANE,
        {3, 3, 3}},
+      // 2 ((1 - cos 25) + (cos 25 - cos 30) / 2), and 4 for a whole sphere
+      {"LightSource \"spot\" \"rgb I\" [1 2 3]" LIGHT_PLANE,
+       {0.22766680917891136, 0.45533361835782272, 0.68300042753673408}},
+      {"LightSource \"spot\" \"rgb I\" [1 2 3] \"float power\" 7" LIGHT_PLANE,
+       {7 / 0x1.921fb54442d18p+1, 14 / 0x1.921fb54442d18p+1, 21 / 0x1.921fb54442d18p+1}},
+      {"LightSource \"spot\" \"float coneangle\" 180 \"float conedeltaangle\" 0" LIGHT_PLANE,
+       {4, 4, 4}},
       // R = 4 sqrt 2
       {"LightSource \"distant\" \"rgb L\" [1 2 3]" LIGHT_PLANE, {32, 64, 96}},
       {"LightSource \"distant\" \"rgb L\" [1 2 3] \"float illuminance\" 10" LIGHT_PLANE,
@@ -85,6 +92,32 @@ static void test_radiance_exact(void **state) {
   scene.light[0].type->radiance(&scene, &scene.light[0], &surface, vec(0, 0, 1), rgb);
   assert_true(rgb[0] == 15 && rgb[1] == 0 && rgb[2] == 15);
   assert_true(scene.light[0].power[1] == 0);
+}
+
+// Emission that is not rgb has luminance 1, times scale, whatever the units of its samples.
+static void test_spectra(void **state) {
+  (void)state;
+  static const struct {
+    const char *spectrum;
+    double rgb[3];
+  } cases_of[] = {
+      {"\"blackbody I\" 6500", {1.043, 0.984, 1.035}}, // pbrt-v4's image
+      {"\"spectrum I\" \"stdillum-D65\"", {1, 1, 1}},
+      {"\"spectrum I\" \"stdillum-F2\"", {1.3400, 0.9430, 0.5628}},
+      // Equal energy: XYZ = 1 1 1 through IEC 61966-2-1
+      {"\"spectrum I\" [300 7 900 7]", {1.2048, 0.9484, 0.9089}},
+  };
+  for (size_t i = 0; i < sizeof cases_of / sizeof *cases_of; i++) {
+    struct scene scene =
+        light_scene(arena_format(&arena, "LightSource \"point\" \"float scale\" 2 %s%s",
+                                 cases_of[i].spectrum, LIGHT_PLANE),
+                    &arena);
+    for (int c = 0; c < 3; c++) {
+      double measured = scene.light[0].power[c] / (8 * pi);
+      if (!(fabs(measured - cases_of[i].rgb[c]) <= 7e-4))
+        fail_msg("%s: channel %d is %.6g", cases_of[i].spectrum, c, measured);
+    }
+  }
 }
 
 static struct vec emitted(const struct scene *scene, struct vec *d) {
@@ -147,6 +180,8 @@ static void test_extreme_numbers(void **state) {
       "LightSource \"point\"" LIGHT_PLANE,
       "LightSource \"point\" \"string emission\" \"lambertian\"" LIGHT_PLANE,
       "LightSource \"distant\"" LIGHT_PLANE,
+      "LightSource \"spot\"" LIGHT_PLANE,
+      "LightSource \"spot\" \"float coneangle\" 90 \"float conedeltaangle\" 90" LIGHT_PLANE,
       "LightSource \"beam\"" LIGHT_PLANE,
       "LightSource \"beam\" \"string profile\" \"quadratic\"" LIGHT_PLANE,
       "LightSource \"beam\" \"string profile\" \"gaussian\"" LIGHT_PLANE,
@@ -209,6 +244,18 @@ static void test_refusals(void **state) {
       {"LightSource \"point\" \"string emission\" \"lambertian\" \"point3 to\" [0 0 0]",
        "give no direction"},
       {"LightSource \"point\" \"point3 to\" [0 0 1]", "to"},
+      {"LightSource \"point\" \"blackbody I\" [0]", "greater than zero"},
+      {"LightSource \"point\" \"blackbody I\" [3000 1]", "one temperature"},
+      {"LightSource \"point\" \"float I\" 3", "rgb, spectrum or blackbody"},
+      {"LightSource \"point\" \"spectrum I\" \"stdillum-D56\"", "\"stdillum-D50\"?"},
+      {"LightSource \"point\" \"spectrum I\" \"metal-Au-eta\"", "an index of refraction"},
+      {"LightSource \"point\" \"spectrum I\" \"no-such.spd\"", "no-such.spd"},
+      {"LightSource \"point\" \"spectrum I\" [400 1 500]", "odd"},
+      {"LightSource \"point\" \"spectrum I\" [400 1 300 1]", "ascend"},
+      {"LightSource \"point\" \"spectrum I\" [200 1 300 1]", "no light between"},
+      {"LightSource \"spot\" \"float coneangle\" 0", "(0, 180]"},
+      {"LightSource \"spot\" \"float coneangle\" 20 \"float conedeltaangle\" 21", "[0, coneangle]"},
+      {"LightSource \"spot\" \"point3 to\" [0 0 0]", "no direction"},
       {"LightSource \"distant\" \"point3 from\" [1 2 3] \"point3 to\" [1 2 3]", "no direction"},
       {"LightSource \"distant\" \"rgb L\" [1 1 -1]", "\"L\" must not be negative"},
       {"LightSource \"distant\" \"float illuminance\" -1", "greater than zero"},
@@ -250,6 +297,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       {"power is what intensity, irradiance or radiance times their measure give", test_power, NULL,
        NULL, NULL},
+      {"emission that is not rgb is normalised to luminance 1", test_spectra, NULL, NULL, NULL},
       {"an area light's power is that of each triangle", test_area_power, NULL, NULL, NULL},
       {"a radiance of 15 reads exactly 15", test_radiance_exact, NULL, NULL, NULL},
       {"lights follow the current transformation", test_transform, NULL, NULL, NULL},

@@ -175,7 +175,7 @@ static const struct {
     // values
     {W "Material \"diffuse\" \"rgb reflectance\" [.5 1.01 .5]", 2, 20, "must be in [0, 1]"},
     {W "Material \"diffuse\" \"rgb reflectance\" [.5 -.1 .5]", 2, 20, "must be in [0, 1]"},
-    {W "Material \"diffuse\" \"spectrum reflectance\" \"wood\"", 2, 20, "must be of type rgb"},
+    {W "Material \"diffuse\" \"spectrum reflectance\" \"wood\"", 2, 20, "there is no spectrum"},
     {W "Material \"diffuse\" \"texture reflectance\" \"wood\"", 2, 20, "no texture"},
     {"Camera \"perspective\" \"float fov\" 180", 1, 22, "between 0 and 180"},
     {"Camera \"perspective\" \"float fov\" 0", 1, 22, "between 0 and 180"},

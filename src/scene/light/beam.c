@@ -179,9 +179,9 @@ static const struct profile *profile_find(const char *name) {
 
 // ---- the light ----
 
-static void read_power(struct params *params, double power[3]) {
+static void read_power(struct scene_builder *builder, struct params *params, double power[3]) {
   if (!light_given(params, "float", "power")) {
-    light_spectrum(params, "power", power);
+    light_spectrum(builder, params, "power", power);
     return;
   }
   double total = params_float(params, "power", 1);
@@ -199,7 +199,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
         "\"%s\" is no beam profile; there are uniform, quadratic, gaussian, cosine", name);
   light_from_to(builder, params, &beam->from, &beam->axis);
   vec_basis(beam->axis, &beam->x, &beam->y);
-  read_power(params, light->power);
+  read_power(builder, params, light->power);
   beam->profile->read(builder, params, beam);
   light->data = beam;
   return light_finish(params, light);

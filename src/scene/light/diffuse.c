@@ -40,7 +40,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
   diffuse->shape = builder->shape;
   diffuse->two_sided = params_bool(params, "twosided", false);
   diffuse->by_power = light_given(params, "float", "power");
-  light_spectrum(params, "L", diffuse->L);
+  light_spectrum(builder, params, "L", diffuse->L);
   double sides = diffuse->two_sided ? 2 : 1;
   double total = light_total(params, "power", sides * light_pi);
   build_cdf(builder->scene, diffuse, builder->arena);

@@ -1,4 +1,4 @@
-// LightSource "distant": `rgb L`, `scale`, `illuminance`, `point3 from`, `to` as pbrt-v4: the
+// LightSource "distant": `L`, `scale`, `illuminance`, `point3 from`, `to` as pbrt-v4: the
 // irradiance perpendicular to the light, which travels from `from` to `to`, is L (times the
 // illuminance, if one is given). Photons start on the disc that the scene's bounding sphere fills,
 // so each carries L pi R^2.
@@ -12,10 +12,9 @@ struct distant {
 
 // The disc touches the bounding sphere where the light comes from.
 static double place_disc(const struct scene *scene, struct distant *distant) {
-  const float *lo = scene->bounds.lo, *hi = scene->bounds.hi;
-  struct vec low = vec(lo[0], lo[1], lo[2]), high = vec(hi[0], hi[1], hi[2]);
-  double radius = vec_length(vec_sub(high, low)) / 2;
-  distant->start = vec_along(vec_scale(vec_add(low, high), 0.5), distant->axis, -radius);
+  struct vec centre;
+  double radius = light_bounding_sphere(scene, &centre);
+  distant->start = vec_along(centre, distant->axis, -radius);
   vec_basis(distant->axis, &distant->s, &distant->t);
   distant->s = vec_scale(distant->s, radius);
   distant->t = vec_scale(distant->t, radius);
@@ -26,7 +25,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
   struct distant *distant = arena_new(builder->arena, struct distant, 1);
   struct vec from;
   light_from_to(builder, params, &from, &distant->axis);
-  light_spectrum(params, "L", distant->irradiance);
+  light_spectrum(builder, params, "L", distant->irradiance);
   double total = light_total(params, "illuminance", 1);
   double radius = place_disc(builder->scene, distant);
   for (int c = 0; c < 3; c++) {

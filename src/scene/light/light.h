@@ -30,15 +30,14 @@ static inline double light_scale(struct params *params) {
   return scale;
 }
 
-// value = rgb `name` (1 1 1 if absent) times `scale`, neither negative.
-static inline void light_spectrum(struct params *params, const char *name, double value[3]) {
+// value = the spectrum `name` (1 1 1 if absent) times `scale`. pbrt-v4 takes what is not rgb at
+// luminance 1.
+static inline void light_spectrum(struct scene_builder *builder, struct params *params,
+                                  const char *name, double value[3]) {
   value[0] = value[1] = value[2] = 1;
-  params_rgb(params, name, value);
+  spectrum_read(builder, params, name, SPECTRUM_ILLUMINANT, value);
   double scale = light_scale(params);
-  for (int c = 0; c < 3; c++) {
-    if (value[c] < 0) params_complain(params, name, "\"%s\" must not be negative", name);
-    value[c] *= scale;
-  }
+  for (int c = 0; c < 3; c++) value[c] *= scale;
 }
 
 // A `power` or `illuminance`: its value / divisor, 1 if absent. pbrt-v4 takes zero or less as
@@ -91,6 +90,21 @@ static inline struct vec light_sample_cosine(struct vec n, double u0, double u1)
   vec_basis(n, &s, &t);
   light_sample_disc(u0, u1, &x, &y);
   return vec_along(vec_along(vec_scale(n, sqrt(1 - u0)), s, x), t, y);
+}
+
+// Uniform on the sphere: the height is uniform (Archimedes).
+static inline struct vec light_sample_sphere(double u0, double u1) {
+  double sine, cosine, radius = 2 * sqrt(u0 * (1 - u0));
+  num_sincos_turns(u1, &sine, &cosine);
+  return vec(radius * cosine, radius * sine, 1 - 2 * u0);
+}
+
+// The sphere around the scene's bounds: where photons of a light at infinity pass.
+static inline double light_bounding_sphere(const struct scene *scene, struct vec *centre) {
+  const float *lo = scene->bounds.lo, *hi = scene->bounds.hi;
+  struct vec low = vec(lo[0], lo[1], lo[2]), high = vec(hi[0], hi[1], hi[2]);
+  *centre = vec_scale(vec_add(low, high), 0.5);
+  return vec_length(vec_sub(high, low)) / 2;
 }
 
 // No ray finds a delta light by chance.

@@ -1,5 +1,5 @@
-// LightSource "point": `point3 from`, `rgb I` [W/sr], `scale`, `power` as pbrt-v4: the irradiance
-// at distance d is I cos / d^2, and a power P [W] means I = P / (4 pi) for each unit of `rgb I`.
+// LightSource "point": `point3 from`, `I` [W/sr], `scale`, `power` as pbrt-v4: the irradiance
+// at distance d is I cos / d^2, and a power P [W] means I = P / (4 pi) for each unit of `I`.
 // Ours: `"string emission" "lambertian"` with `point3 to`. Intensity I cos(theta) around the axis
 // from `from` to `to`, nothing behind: `rgb I` is the peak, the flux is P = pi I, so I = P / pi.
 // Over a plane at distance h this is theory 5 (ii): cos^4 and zero-bias ring at h / sqrt 2
@@ -31,7 +31,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
     point->from =
         transform_point(&builder->world_from_object, params_point3(params, "from", vec(0, 0, 0)));
   double solid_angle = point->lambertian ? light_pi : 4 * light_pi; // weighted with the profile
-  light_spectrum(params, "I", point->intensity);
+  light_spectrum(builder, params, "I", point->intensity);
   double total = light_total(params, "power", solid_angle);
   for (int c = 0; c < 3; c++) {
     point->intensity[c] *= total;
@@ -41,19 +41,12 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
   return light_finish(params, light);
 }
 
-// Uniform on the sphere: the height is uniform (Archimedes).
-static struct vec sample_sphere(double u0, double u1) {
-  double sine, cosine, radius = 2 * sqrt(u0 * (1 - u0));
-  num_sincos_turns(u1, &sine, &cosine);
-  return vec(radius * cosine, radius * sine, 1 - 2 * u0);
-}
-
 static void emit(const struct scene *scene, const struct light *light, const double *u,
                  struct emission *out) {
   (void)scene;
   const struct point *point = light->data;
-  struct vec d =
-      point->lambertian ? light_sample_cosine(point->axis, u[2], u[3]) : sample_sphere(u[2], u[3]);
+  struct vec d = point->lambertian ? light_sample_cosine(point->axis, u[2], u[3])
+                                   : light_sample_sphere(u[2], u[3]);
   out->ray = (struct ray){point->from, d, INFINITY, PRIMITIVE_NONE};
   for (int c = 0; c < 3; c++) out->flux[c] = light->power[c];
 }
