@@ -18,7 +18,7 @@ struct texture_type {
   const char *name, *about; // as in `Texture "n" "spectrum" "name"`
   // `spectrum`: of that kind, else of floats. builder->world_from_object is texture space.
   bool (*read)(struct scene_builder *, struct params *, bool spectrum, struct texture *);
-  // At p, uv (and nothing else) of the surface. Floats: three equal values.
+  // At p, uv and ng (and nothing else) of the surface. Floats: three equal values.
   void (*evaluate)(const struct texture *, const struct surface *, double value[3]);
   bool (*is_gray)(const struct texture *);
 };
