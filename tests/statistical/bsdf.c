@@ -1,0 +1,399 @@
+// Every registered material as hypotheses: samples follow the pdf, weights are what the value
+// integrates to, no importance is created, and light paths measure what eye paths measure, shading
+// normals included. A p-value fails below LEVEL over the number of tests; seeds come from the
+// test's name and the case; one try.
+#include "tests/material_cases.h"
+
+#include <gsl/gsl_cdf.h>
+
+static const double pi = 0x1.921fb54442d18p+1, level = 1e-6;
+
+static const enum transport transports[] = {TRANSPORT_RADIANCE, TRANSPORT_IMPORTANCE};
+static const struct vec views[] = {{0, 0, 1},           {0.48, -0.36, 0.8}, {-0.6, 0.77, 0.2},
+                                   {0.998, 0.01, 0.05}, {0.28, 0.57, -0.6}, {-0.1, -0.99, -0.1}};
+enum { N_VIEWS = (int)(sizeof views / sizeof *views) };
+
+static struct draw draw_case(const char *test, int i) {
+  char name[64];
+  snprintf(name, sizeof name, "%s %d", test, i);
+  return draw_named(name);
+}
+
+static bool draw_sample(struct draw *draw, const struct bsdf *bsdf, struct vec wo,
+                        enum transport transport, struct bsdf_sample *sample) {
+  double u[3], unused;
+  draw_pair(draw, &u[0], &u[1]);
+  draw_pair(draw, &u[2], &unused);
+  return bsdf_sample(bsdf, wo, u, transport, sample);
+}
+
+struct mean {
+  double n, sum, squares;
+};
+
+static void mean_add(struct mean *mean, double x) {
+  mean->n += 1;
+  mean->sum += x;
+  mean->squares += x * x;
+}
+
+static double mean_of(const struct mean *mean) { return mean->sum / mean->n; }
+
+static double variance_of_mean(const struct mean *mean) {
+  double m = mean_of(mean);
+  return (mean->squares / mean->n - m * m) / mean->n;
+}
+
+// ---- integrals over the sphere ----
+// In cells of (theta, phi), split until they do not change: pdf, then f |cos| of the first channel.
+
+enum { ROWS = 16, COLUMNS = 16, CELLS = ROWS * COLUMNS, MAX_SPLITS = 7 };
+
+struct integrand {
+  const struct bsdf *bsdf;
+  struct vec wo;
+  enum transport transport;
+};
+
+struct box2 {
+  double theta[2], phi[2];
+};
+
+static void evaluate(const struct integrand *g, double theta, double phi, double out[2]) {
+  double f[3];
+  struct vec wi = vec(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
+  bsdf_value(g->bsdf, g->wo, wi, g->transport, f);
+  out[0] = bsdf_pdf(g->bsdf, g->wo, wi, g->transport) * sin(theta);
+  out[1] = f[0] * fabs(wi.z) * sin(theta);
+}
+
+static void gauss(const struct integrand *g, struct box2 box, double out[2]) {
+  // Gauss-Legendre, 4 points: roots and weights on [-1, 1].
+  static const double root[] = {-0.861136311594052575, -0.339981043584856265, 0.339981043584856265,
+                                0.861136311594052575};
+  static const double weight[] = {0.347854845137453857, 0.652145154862546143, 0.652145154862546143,
+                                  0.347854845137453857};
+  double half_theta = (box.theta[1] - box.theta[0]) / 2, half_phi = (box.phi[1] - box.phi[0]) / 2;
+  out[0] = out[1] = 0;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      double value[2], w = weight[i] * weight[j] * half_theta * half_phi;
+      evaluate(g, box.theta[0] + half_theta * (1 + root[i]), box.phi[0] + half_phi * (1 + root[j]),
+               value);
+      for (int k = 0; k < 2; k++) out[k] += w * value[k];
+    }
+}
+
+static void integrate(const struct integrand *g, struct box2 box, const double whole[2],
+                      double tolerance, int splits, double sum[2]) {
+  double middle[2] = {(box.theta[0] + box.theta[1]) / 2, (box.phi[0] + box.phi[1]) / 2};
+  double part[4][2], total[2] = {0, 0};
+  struct box2 parts[4];
+  for (int k = 0; k < 4; k++) {
+    parts[k] = box;
+    parts[k].theta[1 - k % 2] = middle[0];
+    parts[k].phi[1 - k / 2] = middle[1];
+    gauss(g, parts[k], part[k]);
+    for (int c = 0; c < 2; c++) total[c] += part[k][c];
+  }
+  bool done = fabs(total[0] - whole[0]) <= tolerance && fabs(total[1] - whole[1]) <= tolerance;
+  if (splits == MAX_SPLITS || done) {
+    for (int c = 0; c < 2; c++) sum[c] += total[c];
+    return;
+  }
+  for (int k = 0; k < 4; k++) integrate(g, parts[k], part[k], tolerance / 2, splits + 1, sum);
+}
+
+// cell[k][0]: probability; cell[k][1]: of f |cos|. Within 1e-5: 0.3 of the samples below.
+static void integrate_cells(const struct integrand *g, double cell[CELLS][2]) {
+  for (int k = 0; k < CELLS; k++) {
+    int row = k / COLUMNS, column = k % COLUMNS;
+    struct box2 box = {{pi * row / ROWS, pi * (row + 1) / ROWS},
+                       {2 * pi * column / COLUMNS, 2 * pi * (column + 1) / COLUMNS}};
+    double whole[2];
+    gauss(g, box, whole);
+    cell[k][0] = cell[k][1] = 0;
+    integrate(g, box, whole, 1e-5, 0, cell[k]);
+  }
+}
+
+static int cell_of(struct vec w) {
+  double phi = atan2(w.y, w.x) / (2 * pi);
+  int row = (int)(acos(w.z) / pi * ROWS), column = (int)((phi < 0 ? phi + 1 : phi) * COLUMNS);
+  return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
+}
+
+// ---- samples against pdf and value ----
+
+struct tally {
+  double count[CELLS], delta, none;
+  struct mean weight; // without delta lobes
+};
+
+static void take_samples(const struct integrand *g, struct draw *draw, int n, struct tally *tally) {
+  *tally = (struct tally){.none = 0};
+  for (int k = 0; k < n; k++) {
+    struct bsdf_sample s;
+    bool sampled = draw_sample(draw, g->bsdf, g->wo, g->transport, &s);
+    mean_add(&tally->weight, sampled && s.pdf > 0 ? s.weight[0] : 0);
+    if (!sampled)
+      tally->none += 1;
+    else if (s.pdf == 0)
+      tally->delta += 1;
+    else
+      tally->count[cell_of(s.wi)] += 1;
+  }
+}
+
+struct chi2 {
+  double sum, rare_expected, rare_count;
+  int terms;
+};
+
+// What expects less than 5 is one term.
+static void chi2_add(struct chi2 *chi2, double expected, double count) {
+  if (expected < 5) {
+    chi2->rare_expected += expected;
+    chi2->rare_count += count;
+    return;
+  }
+  chi2->sum += (count - expected) * (count - expected) / expected;
+  chi2->terms++;
+}
+
+static double chi2_p(struct chi2 *chi2) {
+  double expected = chi2->rare_expected, count = chi2->rare_count;
+  if (expected <
+      5) { // the upper tail of a Poisson variable, 0.3 a cell of integration error allowed
+    double p = count > 0 ? gsl_cdf_gamma_P(expected + 0.5, count, 1) : 1;
+    if (p < level) return p;
+  } else {
+    chi2->sum += (count - expected) * (count - expected) / expected;
+    chi2->terms++;
+  }
+  return chi2->terms > 1 ? gsl_cdf_chisq_Q(chi2->sum, chi2->terms - 1) : 1;
+}
+
+// 30,000 samples in 256 cells: a lobe that is 10 % too wide or a share of 0.02 that goes elsewhere
+// gives a chi-squared of some hundreds more than its degrees of freedom. The mean weight is known
+// to some 0.002: a Fresnel term or a cosine that is left out is hundreds of that.
+static void samples_follow_the_pdf_and_weigh_the_value(void **state) {
+  (void)state;
+  enum { N = 30000, TESTS = N_MATERIAL_CASES * N_VIEWS * 2 * 2 };
+  static double cell[CELLS][2];
+  for (int i = 0; i < N_MATERIAL_CASES; i++) {
+    struct scene scene = material_scene(i);
+    struct bsdf bsdf = material_bsdf(&scene, 0.385);
+    struct draw draw = draw_case("samples_follow_the_pdf_and_weigh_the_value", i);
+    if (!bsdf.type || material_is_random(&scene)) continue;
+    for (int k = 0; k < 2 * N_VIEWS; k++) {
+      struct integrand g = {&bsdf, vec_normalize(views[k / 2]), transports[k % 2]};
+      struct tally tally;
+      struct chi2 chi2 = {0};
+      double delta = bsdf_delta_probability(&bsdf, g.wo, g.transport), total = 0, energy = 0;
+      integrate_cells(&g, cell);
+      take_samples(&g, &draw, N, &tally);
+      for (int c = 0; c < CELLS; c++) {
+        total += cell[c][0];
+        energy += cell[c][1];
+        chi2_add(&chi2, N * cell[c][0], tally.count[c]);
+      }
+      if (!(total <= 1 - delta + 1e-3))
+        fail_msg("%s: the pdf integrates to %.6f", material_cases[i].text, total);
+      chi2_add(&chi2, N * delta, tally.delta);
+      chi2_add(&chi2, N * fmax(1 - delta - total, 0), tally.none);
+      double p = chi2_p(&chi2);
+      if (!(p >= level / TESTS))
+        fail_msg("%s, view %d, %s: chi-squared %.1f over %d cells, p = %.2g",
+                 material_cases[i].text, k / 2, k % 2 ? "importance" : "radiance", chi2.sum,
+                 chi2.terms, p);
+      double se = sqrt(variance_of_mean(&tally.weight)), mean = mean_of(&tally.weight);
+      double limit = gsl_cdf_ugaussian_Qinv(level / TESTS / 2) * se + 1e-3; // of integration
+      if (!(fabs(mean - energy) <= limit))
+        fail_msg("%s, view %d, %s: weights have mean %.5f +- %.5f, the value %.5f",
+                 material_cases[i].text, k / 2, k % 2 ? "importance" : "radiance", mean, se,
+                 energy);
+    }
+  }
+}
+
+// ---- energy ----
+
+// Importance is not created: the mean weight is at most 1, and the albedo where one is known.
+static void importance_is_not_created(void **state) {
+  (void)state;
+  enum { N = 20000, TESTS = N_MATERIAL_CASES * N_VIEWS };
+  double z = gsl_cdf_ugaussian_Qinv(level / TESTS / 2);
+  for (int i = 0; i < N_MATERIAL_CASES; i++) {
+    struct scene scene = material_scene(i);
+    struct draw draw = draw_case("importance_is_not_created", i);
+    double albedo = material_cases[i].albedo;
+    for (int v = 0; v < N_VIEWS; v++) {
+      struct mean weight = {0};
+      for (int k = 0; k < N; k++) {
+        double u, unused;
+        struct bsdf_sample s;
+        draw_pair(&draw, &u, &unused);
+        struct bsdf bsdf = material_bsdf(&scene, u);
+        bool sampled = draw_sample(&draw, &bsdf, vec_normalize(views[v]), TRANSPORT_IMPORTANCE, &s);
+        mean_add(&weight, sampled ? s.weight[0] : 0);
+      }
+      double mean = mean_of(&weight), slack = z * sqrt(fmax(variance_of_mean(&weight), 0)) + 1e-12;
+      if (!(mean <= 1 + slack) || (!isnan(albedo) && !(fabs(mean - albedo) <= slack)))
+        fail_msg("%s, view %d: albedo %.5f, not %.5f", material_cases[i].text, v, mean, albedo);
+    }
+  }
+}
+
+// ---- light paths and eye paths ----
+// A square with shading normals that turn across it, lit by a square above it, seen by one above
+// and one below it. The flux that the lit square sends to each, by eye paths (from the receiver,
+// each point and direction alike), by light paths, and by photons that wait on the square for the
+// receiver to look.
+
+struct square {
+  struct vec centre, x, y, n; // half edges; rays leave and arrive on the side of n, unit length
+};
+
+static const struct square scatterer = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+static const struct square emitter = {{0.4, 0.1, 1}, {0.7, 0, 0}, {0, 0.9, 0}, {0, 0, -1}};
+static const struct square receivers[] = {
+    {{-0.5, -0.2, 1.1}, {0.8, 0, 0}, {0, 0.7, 0}, {0, 0, -1}},
+    {{-0.3, 0.1, -0.9}, {0.9, 0, 0}, {0, 0.8, 0}, {0, 0, 1}},
+};
+enum { N_RECEIVERS = 2 };
+
+static double square_area(const struct square *square) {
+  return 4 * vec_length(square->x) * vec_length(square->y);
+}
+
+static struct vec square_point(const struct square *square, struct draw *draw) {
+  double u, v;
+  draw_pair(draw, &u, &v);
+  return vec_along(vec_along(square->centre, square->x, 2 * u - 1), square->y, 2 * v - 1);
+}
+
+static struct vec draw_cosine(struct draw *draw, struct vec n) {
+  double u, v;
+  struct vec s, t;
+  draw_pair(draw, &u, &v);
+  vec_basis(n, &s, &t);
+  double r = sqrt(u), phi = 2 * pi * v;
+  struct vec across = vec_along(vec_scale(s, r * cos(phi)), t, r * sin(phi));
+  return vec_along(across, n, sqrt(1 - u));
+}
+
+// Where the ray meets the square; `front`: only from the side of n.
+static bool square_hit(const struct square *square, struct vec o, struct vec d, bool front,
+                       struct vec *p) {
+  double toward = vec_dot(d, square->n);
+  if (toward == 0 || (front && toward > 0)) return false;
+  double t = vec_dot(vec_sub(square->centre, o), square->n) / toward;
+  if (!(t > 1e-9)) return false;
+  *p = vec_along(o, d, t);
+  struct vec v = vec_sub(*p, square->centre);
+  return fabs(vec_dot(v, square->x)) <= vec_dot(square->x, square->x) &&
+         fabs(vec_dot(v, square->y)) <= vec_dot(square->y, square->y);
+}
+
+// Normals up to 35 degrees off, differently everywhere.
+static struct bsdf bent_bsdf(const struct scene *scene, struct vec p, struct draw *draw) {
+  double u, unused;
+  struct surface surface = {.p = p, .ng = vec(0, 0, 1), .dpdu = vec(1, 0.3, 0), .uv = {p.x, p.y}};
+  surface.ns = vec_normalize(vec(0.4 * p.x + 0.1, 0.2 - 0.5 * p.y, 1));
+  draw_pair(draw, &u, &unused);
+  return surface_bsdf(scene, &surface, u);
+}
+
+// A path's first two vertices: false if it misses the square or scatters nowhere.
+static bool bounce(const struct scene *scene, const struct square *from, enum transport transport,
+                   struct draw *draw, struct vec *p, struct bsdf_sample *sample) {
+  struct vec o = square_point(from, draw), d = draw_cosine(draw, from->n);
+  if (!square_hit(&scatterer, o, d, false, p)) return false;
+  struct bsdf bsdf = bent_bsdf(scene, *p, draw);
+  return draw_sample(draw, &bsdf, vec_scale(d, -1), transport, sample);
+}
+
+static struct mean flux_by_eye(const struct scene *scene, const struct square *receiver, int n,
+                               struct draw *draw) {
+  struct mean flux = {0};
+  for (int k = 0; k < n; k++) {
+    struct vec p, q;
+    struct bsdf_sample s;
+    bool lit = bounce(scene, receiver, TRANSPORT_RADIANCE, draw, &p, &s) &&
+               square_hit(&emitter, p, s.wi, true, &q);
+    mean_add(&flux, lit ? s.weight[0] * square_area(receiver) * pi : 0);
+  }
+  return flux;
+}
+
+static struct mean flux_by_light(const struct scene *scene, const struct square *receiver, int n,
+                                 struct draw *draw) {
+  struct mean flux = {0};
+  for (int k = 0; k < n; k++) {
+    struct vec p, q;
+    struct bsdf_sample s;
+    bool seen = bounce(scene, &emitter, TRANSPORT_IMPORTANCE, draw, &p, &s) &&
+                square_hit(receiver, p, s.wi, true, &q);
+    mean_add(&flux, seen ? s.weight[0] * square_area(&emitter) * pi : 0);
+  }
+  return flux;
+}
+
+static struct mean flux_by_photons(const struct scene *scene, const struct square *receiver, int n,
+                                   struct draw *draw) {
+  struct mean flux = {0};
+  for (int k = 0; k < n; k++) {
+    struct vec o = square_point(&emitter, draw), d = draw_cosine(draw, emitter.n), p;
+    double value = 0;
+    if (square_hit(&scatterer, o, d, false, &p)) {
+      struct bsdf bsdf = bent_bsdf(scene, p, draw);
+      struct vec to = vec_sub(square_point(receiver, draw), p), wi = vec_scale(d, -1);
+      double d2 = vec_dot(to, to), f[3];
+      struct vec wo = vec_scale(to, 1 / sqrt(d2));
+      bsdf_value(&bsdf, wo, wi, TRANSPORT_RADIANCE, f);
+      value = f[0] * bsdf_photon_factor(&bsdf, wi) * fabs(vec_dot(wo, bsdf.ng)) *
+              fmax(-vec_dot(wo, receiver->n), 0) / d2 * square_area(receiver) *
+              square_area(&emitter) * pi;
+    }
+    mean_add(&flux, value);
+  }
+  return flux;
+}
+
+static void compare(const char *text, const char *what, struct mean a, struct mean b,
+                    double level_each) {
+  double difference = mean_of(&a) - mean_of(&b);
+  double se = sqrt(variance_of_mean(&a) + variance_of_mean(&b));
+  if (!(fabs(difference) <= gsl_cdf_ugaussian_Qinv(level_each / 2) * se))
+    fail_msg("%s, %s: %.5f and %.5f +- %.5f", text, what, mean_of(&a), mean_of(&b), se);
+}
+
+// 150,000 paths give the flux to about 1 %. Without the factor for shading normals a diffuse
+// surface would send 7 % less by light paths, an anisotropic metal 12 %.
+static void light_paths_measure_what_eye_paths_measure(void **state) {
+  (void)state;
+  enum { N = 150000, TESTS = N_MATERIAL_CASES * N_RECEIVERS * 2 };
+  for (int i = 0; i < N_MATERIAL_CASES; i++) {
+    struct scene scene = material_scene(i);
+    struct draw draw = draw_case("light_paths_measure_what_eye_paths_measure", i);
+    bool delta = material_of(&scene)->needs & MATERIAL_DELTA;
+    for (int r = 0; r < N_RECEIVERS; r++) {
+      struct mean eye = flux_by_eye(&scene, &receivers[r], N, &draw);
+      struct mean light = flux_by_light(&scene, &receivers[r], N, &draw);
+      compare(material_cases[i].text, "eye and light paths", eye, light, level / TESTS);
+      if (delta) continue;
+      struct mean photons = flux_by_photons(&scene, &receivers[r], N, &draw);
+      compare(material_cases[i].text, "eye paths and photons", eye, photons, level / TESTS);
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(samples_follow_the_pdf_and_weigh_the_value),
+      cmocka_unit_test(importance_is_not_created),
+      cmocka_unit_test(light_paths_measure_what_eye_paths_measure),
+  };
+  return cmocka_run_group_tests_name("bsdf", tests, NULL, NULL);
+}
