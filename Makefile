@@ -8,11 +8,13 @@ endif
 SHELL = /bin/sh
 
 # ---- what the user may set ----
-BUILD = release# release | debug | asan | tsan
+BUILD = release# release | debug | asan | tsan | fuzz | coverage
 OPT.release = -O2
 OPT.debug = -Og
 OPT.asan = -O1
 OPT.tsan = -O1
+OPT.fuzz = -O1
+OPT.coverage = -O1
 OPT = $(OPT.$(BUILD))
 CFLAGS_EXTRA =
 INSTALL = yes# no: never call apt-get
@@ -22,11 +24,11 @@ DESTDIR =
 V =# 1 shows the commands
 
 ifneq ($(filter default undefined,$(origin CC)),)
-CC := $(if $(filter tsan,$(BUILD)),clang,gcc)
+CC := $(if $(filter tsan fuzz coverage,$(BUILD)),clang,gcc)
 endif
 AR = ar
-ifeq ($(filter $(BUILD),release debug asan tsan),)
-$(error BUILD=$(BUILD): one of release, debug, asan, tsan)
+ifeq ($(filter $(BUILD),release debug asan tsan fuzz coverage),)
+$(error BUILD=$(BUILD): one of release, debug, asan, tsan, fuzz, coverage)
 endif
 
 # ---- flags ----
@@ -34,6 +36,8 @@ FLAGS.release =
 FLAGS.debug = -DASSERT_HOT
 FLAGS.asan = -DASSERT_HOT -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS.tsan = -fsanitize=thread -fno-omit-frame-pointer
+FLAGS.fuzz = $(FLAGS.asan) -fsanitize=fuzzer-no-link
+FLAGS.coverage = -fsanitize=fuzzer-no-link -fprofile-instr-generate -fcoverage-mapping
 # No contraction and no builtins: the same bits from every compiler and level. No -march either.
 CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
   -ffp-contract=off -fno-builtin -fno-math-errno -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
@@ -56,6 +60,8 @@ test_sources := $(sort $(wildcard tests/unit/*.c tests/statistical/*.c))
 test_programs := $(test_sources:tests/%.c=$(out)/tests/%)
 conformance_sources := $(sort $(wildcard tests/conformance/*.c))
 conformance := $(out)/tests/conformance/conformance
+fuzz_sources := $(sort $(wildcard tests/fuzz/*.c))
+fuzz_programs := $(fuzz_sources:tests/%.c=$(out)/tests/%)
 cli_tests := $(filter-out tests/cli/lib.sh,$(sort $(wildcard tests/cli/*.sh)))
 
 quiet = $(if $(V),,@printf '  %-4s %s\n' $1 $2;)
@@ -167,7 +173,7 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 	@mkdir -p $(@D)
 	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
--include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources)) $(generated))
+-include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources)) $(generated))
 
 # ---- tests ----
 .PHONY: test conformance test-programs test-asan test-tsan test-bits test-plants validate
@@ -197,6 +203,34 @@ test-tsan:
 	@$(MAKE) BUILD=tsan test-programs
 	@OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(call sanitized,tsan)
+
+# ---- fuzzing: clang's libFuzzer, one target a file in tests/fuzz ----
+FUZZ_SECONDS = 60# for each target
+packages_fuzz := build/packages/$(cc_name).fuzz
+
+$(packages_fuzz): packages install-packages | $(packages_build)
+	@CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages fuzz clang
+	@touch $@
+
+$(fuzz_programs): $(out)/tests/%: $(out)/obj/tests/%.o $(library) $(gen)/version.o
+	@mkdir -p $(@D)
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) -fsanitize=fuzzer $^ $(LDLIBS) -o $@
+
+$(call object,$(fuzz_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_fuzz)
+	@mkdir -p $(@D)
+	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+.PHONY: fuzz fuzz-coverage fuzz-programs
+fuzz-programs: $(fuzz_programs)
+
+fuzz:
+	@$(MAKE) BUILD=fuzz fuzz-programs
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/run $(fuzz_sources:tests/%.c=build/fuzz/tests/%)
+
+# Of the readers of files, by the corpora and what `make fuzz` has added to them.
+fuzz-coverage:
+	@$(MAKE) BUILD=coverage fuzz-programs
+	@tests/fuzz/coverage $(fuzz_sources:tests/%.c=build/coverage/tests/%)
 
 test-bits: $(binary)
 	@PHOTONLAB=$(binary) tests/run tests/bits
@@ -250,6 +284,7 @@ help:
 	@echo 'make test              all tests: N passed, N failed'
 	@echo 'make test-asan         unit and statistical tests under address and undefined sanitizers'
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
+	@echo 'make fuzz              FUZZ_SECONDS=60 for each reader of files; fuzz-coverage: lines reached'
 	@echo 'make test-bits         the same bytes from gcc -O1, -O3, clang and every instruction set'
 	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
 	@echo 'make conformance       images against pbrt-v4, as precise as the stored ones (CONFORMANCE=folder'
@@ -260,5 +295,5 @@ help:
 	@echo 'make install           PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall | dist | clean'
 	@echo
-	@echo 'BUILD=release|debug|asan|tsan  CC=gcc|clang  OPT=-O2  CFLAGS_EXTRA=  V=1'
+	@echo 'BUILD=release|debug|asan|tsan|fuzz|coverage  CC=gcc|clang  OPT=-O2  CFLAGS_EXTRA=  V=1'
 	@echo 'INSTALL=no (never call apt-get)  QUALITY=default|paper  RESULTS=folder'

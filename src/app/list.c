@@ -96,7 +96,7 @@ static int list(struct cli *cli, struct problem *problem) {
 
 static int info(struct cli *cli, struct problem *problem) {
   struct scene scene;
-  struct scene_options options = {cli->options.lenient, stderr};
+  struct scene_options options = {.lenient = cli->options.lenient, .notes = stderr};
   if (!scene_read_with(cli->argument, options, cli->arena, &scene, problem)) return 1;
   scene_info(&scene, stdout);
   return 0;

@@ -73,7 +73,7 @@ static bool output_can_be_written(const char *path, struct problem *problem) {
 static int render(struct cli *cli, struct problem *problem) {
   struct scene scene;
   struct cell cell;
-  struct scene_options options = {cli->options.lenient, stderr};
+  struct scene_options options = {.lenient = cli->options.lenient, .notes = stderr};
   if (!scene_read_with(cli->argument, options, cli->arena, &scene, problem)) return 1;
   const char *output = cli->output ? cli->output : scene.settings.filename;
   if (!output) return problem_set(problem, "say where the picture goes: -o FILE.exr"), 1;

@@ -38,7 +38,7 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
     if (strcmp(plan->scene[s].path, path) == 0) return &plan->scene[s];
   struct loaded_scene *loaded = &plan->scene[plan->n_scenes];
   loaded->path = path;
-  struct scene_options options = {plan->options.lenient, stderr};
+  struct scene_options options = {.lenient = plan->options.lenient, .notes = stderr};
   if (!scene_read_with(path, options, arena, &loaded->scene, problem)) return NULL;
   loaded->bvh = bvh_build(&loaded->scene, (struct bvh_options){0}, arena);
   plan->n_scenes++;

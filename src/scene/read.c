@@ -236,9 +236,8 @@ static bool read_main(struct reader *reader, struct arena scratch) {
   return true;
 }
 
-// What is left of a reader is the scene.
-static bool read_all(struct reader *reader, const char *path, const char *folder, struct text text,
-                     struct arena scratch) {
+bool read_all(struct reader *reader, const char *path, const char *folder, struct text text,
+              struct arena scratch) {
   struct scene *scene = reader->builder.scene;
   *scene =
       (struct scene){.path = arena_string(reader->builder.arena, path, (ptrdiff_t)strlen(path)),
@@ -246,6 +245,7 @@ static bool read_all(struct reader *reader, const char *path, const char *folder
   struct reading file = {.path = scene->path};
   reader->lexer = lexer_begin(scene->path, text, reader->problem);
   reader->builder.folder = folder;
+  reader->builder.own_folder = reader->options.own_folder;
   reader->reading = &file;
   read_default_transform(reader);
   read_default_options(reader);

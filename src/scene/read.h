@@ -27,6 +27,7 @@ struct scene_builder {
   bool textured;                      // set by input_read_*: a texture was taken
   const char *folder;                 // of the scene's file, to which others are relative, as in
                                       // pbrt, whichever names them; NULL: no other may be read
+  bool own_folder;                    // of scene_options
   struct shape *shape;                // area lights: the emitter (a light that reads its uv sets
                                       // `detailed`); NULL otherwise
   struct named_textures {

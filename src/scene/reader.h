@@ -253,6 +253,10 @@ bool read_place_shape(struct reader *, const struct shape_type *, const struct a
 // Adds the primitives of every ObjectInstance.
 bool read_instances(struct reader *);
 
+// What scene_read_text does, with a reader that has its arenas, problem and options.
+bool read_all(struct reader *, const char *path, const char *folder, struct text,
+              struct arena scratch);
+
 // scene_read on the file's text; `folder` (ending in /, or empty) is where the files it names are,
 // NULL: it may name none. `lists` and `scratch` are free again when it returns.
 bool scene_read_text(const char *path, const char *folder, struct text, struct arena *,

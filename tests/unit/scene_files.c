@@ -137,7 +137,7 @@ static void what_is_left_out_leniently_is_said(void **state) {
   struct problem problem = {{0}};
   char said[512] = "", wanted[512];
   FILE *notes = fmemopen(said, sizeof said, "w");
-  struct scene_options options = {true, notes};
+  struct scene_options options = {.lenient = true, .notes = notes};
   assert_true(scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem));
   fclose(notes);
   snprintf(wanted, sizeof wanted,
@@ -145,6 +145,25 @@ static void what_is_left_out_leniently_is_said(void **state) {
            "%1$s:3:22: Material \"diffuse\": \"displacement\" is left out\n",
            path_of("main.pbrt"));
   assert_string_equal(said, wanted);
+}
+
+static void files_outside_of_the_folder_can_be_refused(void **state) {
+  (void)state;
+  static const char *const names[] = {"/etc/hostname", "../b.pbrt", "part/../b.pbrt", "//b.pbrt"};
+  struct arena keep = test_memory()->keep;
+  struct scene_options options = {.own_folder = true};
+  struct scene scene;
+  for (int k = 0; k < 4; k++) {
+    struct problem problem = {{0}};
+    put("main.pbrt", arena_format(&test_memory()->lists, "Include \"%s\"", names[k]));
+    assert_false(scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem));
+    assert_non_null(strstr(problem.text, "is outside of the scene's folder"));
+  }
+  struct problem problem = {{0}};
+  put("main.pbrt", "WorldBegin Include \"part/b.pbrt\"");
+  put("part/b.pbrt", TRIANGLE);
+  if (!scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem))
+    fail_msg("%s", problem.text);
 }
 
 static int make_folder(void **state) {
@@ -172,6 +191,7 @@ int main(void) {
       cmocka_unit_test(the_hash_is_of_all_files_in_order),
       cmocka_unit_test(compressed_files_are_read),
       cmocka_unit_test(what_is_left_out_leniently_is_said),
+      cmocka_unit_test(files_outside_of_the_folder_can_be_refused),
   };
   return cmocka_run_group_tests_name("scene_files", tests, make_folder, remove_folder);
 }
