@@ -4,8 +4,10 @@
 #define SCENE_MATERIAL_CONDUCTOR_INPUT_H
 
 #include "scene/material/conductor.h"
-#include "scene/material/metal.h"
 #include "scene/material/roughness.h"
+#include "spectrum/spectrum.h"
+
+#include <string.h>
 
 struct conductor_input {
   struct input eta, k, reflectance;
@@ -13,18 +15,29 @@ struct conductor_input {
   struct roughness roughness;
 };
 
-// `"spectrum eta" "metal-Cu-eta"` has indices of its own here; everything else is a spectrum.
-static inline struct input conductor_read_index(struct scene_builder *builder,
-                                                struct params *params, const char *name,
-                                                const char *fallback) {
-  for (int i = 0; i < params->count; i++) {
-    const struct param *param = &params->item[i];
-    if (strcmp(param->name, name) || strcmp(param->type, "spectrum") || !param->string) continue;
-    const double *index = metal_find(param->string[0]);
-    if (!index || !params_any(params, name)) continue;
-    return (struct input){.value = {index[0], index[1], index[2]}};
+static inline struct input conductor_copper(const char *name) {
+  struct input input = {0};
+  memcpy(input.value, spectrum_named(name)->rgb, sizeof input.value);
+  return input;
+}
+
+static inline bool conductor_is_textured(const struct params *params, const char *name) {
+  for (int i = 0; i < params->count; i++)
+    if (!strcmp(params->item[i].name, name)) return !strcmp(params->item[i].type, "texture");
+  return false;
+}
+
+static inline void conductor_read_indices(struct scene_builder *builder, struct params *params,
+                                          const char *eta, const char *k,
+                                          struct conductor_input *input) {
+  input->eta = conductor_copper("metal-Cu-eta");
+  input->k = conductor_copper("metal-Cu-k");
+  if (conductor_is_textured(params, eta) || conductor_is_textured(params, k)) {
+    input->eta = input_read_spectrum(builder, params, eta, SPECTRUM_UNBOUNDED, input->eta.value);
+    input->k = input_read_spectrum(builder, params, k, SPECTRUM_UNBOUNDED, input->k.value);
+  } else {
+    spectrum_read_metal(builder, params, eta, k, input->eta.value, input->k.value);
   }
-  return input_read_spectrum(builder, params, name, SPECTRUM_UNBOUNDED, metal_find(fallback));
 }
 
 static inline struct conductor_input conductor_read(struct scene_builder *builder,
@@ -40,8 +53,7 @@ static inline struct conductor_input conductor_read(struct scene_builder *builde
     input.reflectance = input_read_spectrum(builder, params, "reflectance", SPECTRUM_ALBEDO, none);
     return input;
   }
-  input.eta = conductor_read_index(builder, params, eta, "metal-Cu-eta");
-  input.k = conductor_read_index(builder, params, k, "metal-Cu-k");
+  conductor_read_indices(builder, params, eta, k, &input);
   return input;
 }
 
