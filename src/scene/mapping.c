@@ -86,7 +86,6 @@ enum { N_MAPPINGS = sizeof mappings / sizeof *mappings };
 
 bool mapping_read_space(const struct scene_builder *builder, struct params *params,
                         struct transform *texture_from_world) {
-  if (builder->moves) return params_complain(params, "mapping", "a texture cannot move");
   return transform_invert(builder->world_from_object, texture_from_world) ||
          params_complain(params, "mapping", "the current transformation has no inverse");
 }
