@@ -42,6 +42,16 @@ static void list_lights(void) {
     printf("  %-15s %s\n", light_types[k]->name, light_types[k]->about);
 }
 
+static void list_cameras(void) {
+  for (int k = 0; camera_types[k]; k++)
+    printf("  %-15s %s\n", camera_types[k]->name, camera_types[k]->about);
+}
+
+static void list_filters(void) {
+  for (int k = 0; filter_types[k]; k++)
+    printf("  %-15s %s\n", filter_types[k]->name, filter_types[k]->about);
+}
+
 static void list_skips(void) {
   for (int k = 0; k < n_skip_rows; k++)
     printf("  %-15s %s\n", skip_rows[k].name, skip_rows[k].about);
@@ -68,6 +78,8 @@ static const struct {
     {"shapes", "of scene files", list_shapes},
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},
+    {"cameras", "of scene files", list_cameras},
+    {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
     {"skips", "what is left out where a scene does not need it", list_skips},
     {"experiment", "keys of an experiment file: name, default, meaning", list_experiment},
     {"log", "columns of log.csv: name, unit, meaning", list_log},

@@ -16,5 +16,6 @@ void num_sincos(double x, double *sine, double *cosine); // radians, |x| <= 1e5
 void num_sincos_turns(double u, double *sine,
                       double *cosine); // of 2 pi u; exact at multiples of 1/4, |u| <= 1e5
 double num_rgamma1p(double a);         // 1 / Gamma(1 + a) for a in [0, 1]
+double num_erf(double x);
 
 #endif

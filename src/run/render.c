@@ -26,6 +26,14 @@ static void push_round(struct moments_tree *tree, const double *frames, int coun
   }
 }
 
+// The film's exposure, of the mean and of its variance.
+static void expose(struct image *image, double exposure, long n) {
+  for (int k = 0; k < 6 && exposure != 1; k++)
+    for (long j = 0; j < n; j++)
+      image->plane[k][j] =
+          (float)((double)image->plane[k][j] * (k < 3 ? exposure : exposure * exposure));
+}
+
 bool render_image(const struct integrator_type *integrator, const struct measurement *measure,
                   uint64_t iterations, struct run_options options, struct arena *arena,
                   struct image *image) {
@@ -59,5 +67,6 @@ bool render_image(const struct integrator_type *integrator, const struct measure
   if (interrupt_signal()) return false;
   moments_tree_root(&tree, moments);
   *image = picture_of(measure, moments, moments_se2, arena);
+  expose(image, measure->scene->settings.exposure, measure->n_points);
   return true;
 }

@@ -4,8 +4,9 @@
 
 #include "scene/scene.h"
 
-// Fills the window when camera and film are known: the shorter axis spans [-1, 1] times the type's
-// scale.
-void camera_set_window(struct camera *);
+const struct camera_type *camera_find(const char *name); // NULL: none
+
+// pbrt's default screen window x0 x1 y0 y1: the shorter axis spans [-1, 1].
+void camera_screen(double aspect, double screen[4]);
 
 #endif

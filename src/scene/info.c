@@ -3,6 +3,7 @@
 #include "scene/skip.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 // Longer lists are cut, and say so.
 enum { MAX_ROWS = 32 };
@@ -10,12 +11,24 @@ enum { MAX_ROWS = 32 };
 static void print_camera(const struct scene *scene, FILE *out) {
   const struct camera *camera = &scene->camera;
   struct ray axis = camera_ray(camera, camera->width / 2.0, camera->height / 2.0, NULL);
-  fprintf(out, "camera       %s, fov %g degrees (shorter axis)\n", camera->type->name, camera->fov);
+  const struct filter *filter = &scene->filter;
+  fprintf(out, "camera       %s", camera->type->name);
+  if (strcmp(camera->type->name, "perspective") == 0)
+    fprintf(out, ", fov %g degrees (shorter axis)", camera->fov);
+  if (camera->lens_radius > 0)
+    fprintf(out, ", lens of radius %g focused at %g", camera->lens_radius, camera->focal_distance);
+  fprintf(out, "%s\n", camera->moves ? ", moves" : "");
   fprintf(out, "  eye        %g %g %g\n", axis.o.x, axis.o.y, axis.o.z);
   fprintf(out, "  towards    %g %g %g\n", axis.d.x, axis.d.y, axis.d.z);
   const char *filename = scene->settings.filename;
-  fprintf(out, "film         %d x %d pixels%s%s\n", camera->width, camera->height,
-          filename ? ", " : "", filename ? filename : "");
+  fprintf(out, "film         %d x %d pixels", camera->width, camera->height);
+  if (camera->width < camera->full_width || camera->height < camera->full_height)
+    fprintf(out, " from (%d, %d) of %d x %d", camera->crop_x, camera->crop_y, camera->full_width,
+            camera->full_height);
+  if (scene->settings.exposure != 1) fprintf(out, ", exposure %g", scene->settings.exposure);
+  fprintf(out, "%s%s\n", filename ? ", " : "", filename ? filename : "");
+  fprintf(out, "filter       %s, radius %g x %g\n", filter->type->name, filter->radius[0],
+          filter->radius[1]);
 }
 
 static void print_name(FILE *out, const char *name, const char *value) {
@@ -36,7 +49,7 @@ static void print_settings(const struct scene_settings *settings, FILE *out) {
   print_name(out, "integrator", settings->integrator);
   print_count(out, "maxdepth", settings->max_depth, -1);
   print_count(out, "samples", settings->spp, -1);
-  print_name(out, "pixel", settings->centre ? "centre" : "footprint (box filter, radius 0.5)");
+  print_name(out, "pixel", settings->centre ? "centre" : "footprint");
   print_number(out, "radius", settings->radius);
   print_number(out, "alpha", settings->alpha);
   print_count(out, "photons", settings->photons, 0);

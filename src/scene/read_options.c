@@ -1,5 +1,4 @@
-// Directives before WorldBegin: camera, film, and how to render.
-#include "scene/camera.h"
+// Directives before WorldBegin that say how to render.
 #include "scene/reader.h"
 
 #include <limits.h>
@@ -12,112 +11,23 @@ static bool is_one_of(const char *name, const char *const *names, int n) {
 }
 #define IS_ONE_OF(name, names) is_one_of(name, names, (int)(sizeof(names) / sizeof *(names)))
 
-// pbrt lets the last one win, which hides mistakes.
-static bool only_once(struct reader *reader, const struct call *call, struct place *given) {
-  if (given->line > 0)
-    return problem_at(reader->problem, call->place, "a second %s (the first is in line %d)",
-                      call->name, given->line);
-  *given = call->place;
-  return true;
-}
-
 static bool wrong_type(struct reader *reader, const struct call *call, const char *advice) {
   return problem_at(reader->problem, call->type_place, "%s \"%s\" is not in this version; %s",
                     call->name, call->type, advice);
 }
 
-static const struct camera_type *find_camera(const char *name) {
-  for (int k = 0; camera_types[k]; k++)
-    if (!strcmp(camera_types[k]->name, name)) return camera_types[k];
-  return NULL;
-}
-
 void read_default_options(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
-  scene->camera = (struct camera){.type = find_camera("perspective"),
-                                  .world_from_camera = transform_identity(),
-                                  .fov = 90,
-                                  .width = 1280,
-                                  .height = 720,
-                                  .full_width = 1280,
-                                  .full_height = 720};
-  scene->filter = (struct filter){.type = filter_find("box"), .radius = {0.5, 0.5}};
-  scene->settings = (struct scene_settings){
-      .filename = NULL, .max_depth = 5, .spp = 16, .radius = NAN, .alpha = NAN, .seed = -1};
+  scene->settings = (struct scene_settings){.filename = NULL,
+                                            .max_depth = 5,
+                                            .spp = 16,
+                                            .exposure = 1,
+                                            .radius = NAN,
+                                            .alpha = NAN,
+                                            .seed = -1};
   reader->sampler_seed = reader->option_seed = -1;
   reader->transform_times[END] = 1;
-}
-
-// Accepted where it has pbrt's default, which is all we do.
-static void only_default(struct params *params, const char *name, double value) {
-  if (params_float(params, name, value) != value)
-    params_complain(params, name, "\"%s\" must be %g in this version", name, value);
-}
-
-bool read_camera(struct reader *reader, struct call *call) {
-  struct params *params = &call->params;
-  struct camera *camera = &reader->builder.scene->camera;
-  if (!only_once(reader, call, &reader->camera) || !read_check_outside(reader, call)) return false;
-  camera->type = find_camera(call->type);
-  if (!camera->type) return wrong_type(reader, call, "use \"perspective\"");
-  if (!camera->type->read(camera, params)) return false;
-  only_default(params, "lensradius", 0);
-  only_default(params, "shutteropen", 0);
-  only_default(params, "shutterclose", 1);
-  params_float(params, "focaldistance", 0); // without a lens everything is in focus
-  reader->frame_aspect_ratio = params_float(params, "frameaspectratio", 0);
-  ptrdiff_t count;
-  reader->screen_window = params_array(params, "float", "screenwindow", &count);
-  if (reader->screen_window && count != 4)
-    params_complain(params, "screenwindow", "screenwindow needs 4 numbers, has %td", count);
-  struct transform world_from_camera[N_ENDS];
-  for (int end = START; end < N_ENDS; end++)
-    transform_invert(reader->now.world_from_object[end], &world_from_camera[end]);
-  read_name_coordinate_system(reader, "camera", world_from_camera);
-  if (read_is_moving(&reader->now))
-    return problem_at(reader->problem, call->place, "Camera: motion is not in this version");
-  camera->world_from_camera = world_from_camera[START];
-  return params_finish(params);
-}
-
-// An image larger than this in either direction is a mistake in the file.
-enum { MAX_RESOLUTION = 65536 };
-
-static int read_resolution(struct params *params, const char *name, int fallback) {
-  int64_t pixels = params_integer(params, name, fallback);
-  if (pixels >= 1 && pixels <= MAX_RESOLUTION) return (int)pixels;
-  params_complain(params, name, "%s must be from 1 to %d", name, MAX_RESOLUTION);
-  return fallback;
-}
-
-bool read_film(struct reader *reader, struct call *call) {
-  struct params *params = &call->params;
-  struct scene *scene = reader->builder.scene;
-  if (!only_once(reader, call, &reader->film)) return false;
-  if (strcmp(call->type, "rgb") != 0) return wrong_type(reader, call, "use \"rgb\"");
-  scene->camera.width = read_resolution(params, "xresolution", 1280);
-  scene->camera.height = read_resolution(params, "yresolution", 720);
-  scene->camera.full_width = scene->camera.width;
-  scene->camera.full_height = scene->camera.height;
-  scene->settings.filename = params_string(params, "filename", NULL);
-  params_bool(params, "savefp16", true); // how pbrt stores; we always store 32 bits
-  return params_finish(params);
-}
-
-bool read_pixel_filter(struct reader *reader, struct call *call) {
-  struct params *params = &call->params;
-  if (!only_once(reader, call, &reader->filter)) return false;
-  if (strcmp(call->type, "box") != 0)
-    return wrong_type(reader, call,
-                      "use \"box\": others mix pixels, so their statistics are not independent");
-  static const char *const names[] = {"xradius", "yradius"};
-  for (int i = 0; i < 2; i++)
-    if (params_float(params, names[i], 0.5) != 0.5)
-      params_complain(params, names[i],
-                      "%s must be 0.5: a wider box mixes pixels, so their statistics are not "
-                      "independent",
-                      names[i]);
-  return params_finish(params);
+  read_default_film(reader);
 }
 
 // What no file can say: its integers are at most 2^53.
@@ -150,7 +60,7 @@ bool read_sampler(struct reader *reader, struct call *call) {
                                       "sobol",  "stratified",  "zsobol"};
   struct params *params = &call->params;
   struct scene_settings *settings = &reader->builder.scene->settings;
-  if (!only_once(reader, call, &reader->sampler)) return false;
+  if (!read_only_once(reader, call, &reader->sampler)) return false;
   if (!IS_ONE_OF(call->type, known)) return wrong_type(reader, call, "use \"independent\"");
   if (strcmp(call->type, "stratified") == 0)
     read_stratified(params, settings);
@@ -216,7 +126,7 @@ static void read_names(struct params *params, struct scene_settings *settings) {
 bool read_integrator(struct reader *reader, struct call *call) {
   struct params *params = &call->params;
   struct scene_settings *settings = &reader->builder.scene->settings;
-  if (!only_once(reader, call, &reader->integrator)) return false;
+  if (!read_only_once(reader, call, &reader->integrator)) return false;
   bool unbiased = is_unbiased(call->type);
   settings->integrator = unbiased ? "path" : call->type;
   read_ranges(params, settings);
@@ -238,27 +148,11 @@ bool read_color_space(struct reader *reader, struct call *call) {
   return wrong_type(reader, call, "use \"srgb\"");
 }
 
-// pbrt's default window is [-a a -1 1] with a the aspect ratio of a wide image, and so on.
-static bool check_window(struct reader *reader) {
-  const struct camera *camera = &reader->builder.scene->camera;
-  double aspect = (double)camera->width / camera->height;
-  double x = aspect > 1 ? aspect : 1, y = aspect > 1 ? 1 : 1 / aspect;
-  const double *window = reader->screen_window;
-  if (window && !(window[0] == -x && window[1] == x && window[2] == -y && window[3] == y))
-    return problem_at(reader->problem, reader->camera,
-                      "Camera: screenwindow is not in this version; change fov and resolution");
-  if (reader->frame_aspect_ratio != 0 && reader->frame_aspect_ratio != aspect)
-    return problem_at(reader->problem, reader->camera,
-                      "Camera: frameaspectratio is not in this version; change the resolution");
-  return true;
-}
-
 bool read_finish_options(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
-  if (!check_window(reader)) return false;
   if (scene->settings.seed < 0) scene->settings.seed = reader->sampler_seed;
   if (scene->settings.seed < 0) scene->settings.seed = reader->option_seed;
   if (reader->no_pixel_jitter) scene->settings.centre = true;
-  camera_set_window(&scene->camera);
-  return true;
+  memcpy(scene->motion_time, reader->transform_times, sizeof scene->motion_time);
+  return read_finish_film(reader);
 }

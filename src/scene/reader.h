@@ -128,7 +128,8 @@ struct reader {
   } lights;
   struct place world_begin;                                            // line 0: not yet
   struct place camera, film, sampler, integrator, filter, color_space; // line 0: not given
-  const double *screen_window; // Camera's, to be compared with the default; or NULL
+  const double *screen_window; // Camera's, or NULL
+  double iso;                  // Film's
   double frame_aspect_ratio;   // 0: not given
   double transform_times[N_ENDS];
   int64_t sampler_seed, option_seed; // -1: not given
@@ -212,11 +213,16 @@ bool read_medium_interface(struct reader *, struct call *);
 bool read_light_source(struct reader *, struct call *);
 bool read_area_light_source(struct reader *, struct call *);
 
+// pbrt lets the last directive of a kind win, which hides mistakes. False: it was given before.
+bool read_only_once(struct reader *, const struct call *, struct place *given);
+
 // What pbrt assumes where the file says nothing; then, at the end of the file, what could not be
 // checked before it.
 void read_default_transform(struct reader *);
 void read_default_options(struct reader *);
 bool read_finish_options(struct reader *);
+void read_default_film(struct reader *);
+bool read_finish_film(struct reader *);
 void read_default_material(struct reader *);
 
 // The directives of a file up to its end.

@@ -189,15 +189,18 @@ struct camera {
   int full_width, full_height;        // of the film it is cut from
   int crop_x, crop_y;                 // where the image's top left pixel is on the film
   double window[4];                   // x0 x1 y0 y1 of the film at z = 1 (orthographic: anywhere), camera space
-  double fov;                         // degrees, shorter axis
+  double fov;                         // perspective: degrees, shorter axis
+  bool equirectangular;               // spherical: longitude and latitude, else equal areas
   double lens_radius, focal_distance; // 0: a pinhole
   double shutter_open, shutter_close;
 };
 
 struct camera_type {
   const char *name, *about;
+  bool has_lens;                                  // and a screen window
   bool (*read)(struct camera *, struct params *); // what is the type's own (fov)
-  double (*window_scale)(const struct camera *);  // of the screen window, to give `window`
+  // Fills `window` from the screen window x0 x1 y0 y1.
+  void (*set_window)(struct camera *, const double screen[4]);
   // The ray in camera space through (x, y) of the window, before the lens; d need not be of unit
   // length.
   struct ray (*ray)(const struct camera *, double x, double y);
@@ -227,6 +230,7 @@ struct scene_settings {
   const char *integrator;  // Integrator, NULL if none
   int max_depth;           // pbrt's maxdepth; default 5 as pbrt
   int64_t spp;             // Sampler pixelsamples
+  double exposure;         // Film: what a picture multiplies radiance with (shutter time, iso)
   bool centre;             // pixel centres (Sampler "stratified" "bool jitter" false), else the footprint
   double radius, alpha;    // our own integrators; NAN where the file says nothing
   int64_t photons, iterations, seed; // 0, 0, -1 where the file says nothing

@@ -10,10 +10,11 @@ static bool read(struct camera *camera, struct params *params) {
 }
 
 // The window at z = 1 is the screen window times tan(fov / 2).
-static double window_scale(const struct camera *camera) {
+static void set_window(struct camera *camera, const double screen[4]) {
   double sine, cosine;
   num_sincos_turns(camera->fov / 720, &sine, &cosine);
-  return sine / cosine;
+  double scale = sine / cosine;
+  for (int k = 0; k < 4; k++) camera->window[k] = screen[k] * scale;
 }
 
 static struct ray ray(const struct camera *camera, double x, double y) {
@@ -24,7 +25,8 @@ static struct ray ray(const struct camera *camera, double x, double y) {
 const struct camera_type camera_perspective = {
     .name = "perspective",
     .about = "a pinhole or thin lens, fov across the shorter axis",
+    .has_lens = true,
     .read = read,
-    .window_scale = window_scale,
+    .set_window = set_window,
     .ray = ray,
 };

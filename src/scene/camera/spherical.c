@@ -1,0 +1,64 @@
+// Camera "spherical": all directions from a point, +y up. `string mapping` ["equalarea"]: of the
+// square film (Clarberg 2008, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD"), or
+// "equirectangular": longitude and latitude.
+#include "numeric/elementary.h"
+#include "scene/scene.h"
+
+#include <string.h>
+
+static bool read(struct camera *camera, struct params *params) {
+  const char *mapping = params_string(params, "mapping", "equalarea");
+  camera->equirectangular = strcmp(mapping, "equirectangular") == 0;
+  if (!camera->equirectangular && strcmp(mapping, "equalarea") != 0)
+    params_complain(params, "mapping",
+                    "mapping is \"equalarea\" or \"equirectangular\", not \"%s\"", mapping);
+  return !params->problem->text[0];
+}
+
+// From 0 to 1, right and down.
+static void set_window(struct camera *camera, const double screen[4]) {
+  (void)screen;
+  const double unit[4] = {0, 1, 1, 0};
+  for (int k = 0; k < 4; k++) camera->window[k] = unit[k];
+}
+
+static struct vec equirectangular(double u, double v) {
+  double sin_phi, cos_phi, sin_theta, cos_theta;
+  num_sincos_turns(u, &sin_phi, &cos_phi);
+  num_sincos_turns(v / 2, &sin_theta, &cos_theta);
+  return vec(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
+}
+
+// Beyond an edge the square goes on with the same edge, the other way round.
+static void wrap(double *across, double *along) {
+  if (*across >= 0 && *across <= 1) return;
+  *across = *across < 0 ? -*across : 2 - *across;
+  *along = 1 - *along;
+}
+
+// Each quarter of the square is a triangle of the octahedron and its mirror image: r = |u| + |v| in
+// [-1, 1]^2 up to the diagonal is the sphere's upper half.
+static struct vec equal_area(double s, double t) {
+  wrap(&s, &t);
+  wrap(&t, &s);
+  double u = 2 * s - 1, v = 2 * t - 1, above = 1 - (fabs(u) + fabs(v)), r = 1 - fabs(above);
+  double turns = r == 0 ? 0.125 : ((fabs(v) - fabs(u)) / r + 1) / 8, sine, cosine;
+  num_sincos_turns(turns, &sine, &cosine);
+  double rho = r * sqrt(2 - r * r), z = 1 - r * r;
+  return vec(u < 0 ? -cosine * rho : cosine * rho, v < 0 ? -sine * rho : sine * rho,
+             above < 0 ? -z : z);
+}
+
+static struct ray ray(const struct camera *camera, double x, double y) {
+  struct vec d = camera->equirectangular ? equirectangular(x, y) : equal_area(x, y);
+  return (struct ray){vec(0, 0, 0), vec(d.x, d.z, d.y), INFINITY, PRIMITIVE_NONE};
+}
+
+const struct camera_type camera_spherical = {
+    .name = "spherical",
+    .about = "all directions, by equal areas or longitude and latitude",
+    .has_lens = false,
+    .read = read,
+    .set_window = set_window,
+    .ray = ray,
+};
