@@ -33,6 +33,21 @@ static void assert_same(const char *what, const struct moments *a, const struct 
     fail_msg("%s: %.9g and %.9g: z = %.2f", what, average(a), average(b), difference / se);
 }
 
+// An image of 7 x 7 texels in three colours that differ by factors of hundreds, some of them black.
+#define IMAGE "light-rows.pfm"
+
+static void write_image(void) {
+  FILE *file = fopen(P_tmpdir "/" IMAGE, "wb");
+  assert_non_null(file);
+  fprintf(file, "PF\n7 7\n-1\n");
+  for (int k = 0; k < 7 * 7; k++) {
+    float value = k % 5 == 0 ? 0 : (float)(1 + 200 * (k % 11 == 3) + k % 3);
+    const float rgb[3] = {value, k % 2 ? 0.25f * value : value, 0.5f + value};
+    fwrite(rgb, sizeof *rgb, 3, file);
+  }
+  fclose(file);
+}
+
 // One row of light_types, or a variant of it. Two colours, so that channels cannot be mixed up. The
 // patch is inside the scene's bounds (LIGHT_PLANE's square), with nothing between it and the light.
 struct case_of_light {
@@ -71,6 +86,13 @@ static const struct case_of_light cases[] = {
      "LightSource \"spot\" \"rgb I\" [3 1 2] \"float coneangle\" 160 \"float conedeltaangle\" "
      "30" AIMED,
      {1.5, 1.2, 2.2},
+     TILTED,
+     2},
+    {"infinite", "LightSource \"infinite\" \"rgb L\" [3 1 2]", {0.4, -0.3, 0.1}, TILTED, 2},
+    {"infinite",
+     "AttributeBegin\nRotate 40 0.3 0.2 1\nScale -1 1 1\nLightSource \"infinite\" \"string "
+     "filename\" \"" IMAGE "\" \"float scale\" 0.7\nAttributeEnd",
+     {0.4, -0.3, 0.1},
      TILTED,
      2},
     {"diffuse",
@@ -207,6 +229,7 @@ static void test_samples_are_what_rays_meet(void **state) {
 
 int main(void) {
   arena = arena_reserve();
+  write_image();
   const struct CMUnitTest tests[] = {
       {"every registered light is tested", test_every_row_is_here, NULL, NULL, NULL},
       {"photons and connections give the same irradiance, and photons all of the power",
@@ -215,5 +238,7 @@ int main(void) {
       {"a sampled direction is what a ray meets", test_samples_are_what_rays_meet, NULL, NULL,
        NULL},
   };
-  return cmocka_run_group_tests_name("light_rows", tests, NULL, NULL);
+  int failed = cmocka_run_group_tests_name("light_rows", tests, NULL, NULL);
+  unlink(P_tmpdir "/" IMAGE);
+  return failed;
 }
