@@ -1,0 +1,60 @@
+// `photonlab info` says what a scene uses and which features it lets us skip.
+#define _GNU_SOURCE // fmemopen
+#include "scene/info.h"
+#include "scene_text.h"
+
+static char said[8192];
+
+static void info_of(const char *text) {
+  struct scene scene = scene_of(text);
+  FILE *out = fmemopen(said, sizeof said, "w");
+  scene_info(&scene, out);
+  fclose(out);
+}
+
+static void assert_says(const char *line) {
+  if (!strstr(said, line)) fail_msg("\"%s\" is not in\n%s", line, said);
+}
+
+static void what_a_scene_uses_is_listed(void **state) {
+  (void)state;
+  info_of("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\n"
+          "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.5 .25 .25]\n"
+          "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+          "ObjectBegin \"o\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" ObjectEnd\n"
+          "ObjectInstance \"o\" ObjectInstance \"o\" ObjectInstance \"o\" LightSource \"point\"\n"
+          "NamedMaterial \"b\" Shape \"sphere\" \"float alpha\" .5\n"
+          "Texture \"f\" \"float\" \"constant\" Texture \"f\" \"spectrum\" \"constant\"\n");
+  assert_says("1 scene file and all");
+  assert_says("shapes       7 with 7 primitives");
+  assert_says("  sphere       4 with 4 primitives");
+  assert_says("  objects      1, 3 instances");
+  assert_says("  alpha        on 1 shapes");
+  assert_says("materials    2 named");
+  assert_says("on 7 shapes, 1 black, 6 coloured");
+  assert_says("textures     2\n  constant             2\n");
+  assert_says("media        1, nothing is in them");
+  assert_says("  colour       yes");
+  assert_says("  see-through  yes");
+  assert_says("  random eye   yes");
+  assert_says("  gray         no");
+}
+
+static void what_a_scene_does_not_need_is_said_so(void **state) {
+  (void)state;
+  info_of("WorldBegin LightSource \"point\" Shape \"sphere\"");
+  static const char *const names[] = {"colour", "motion", "see-through", "background", "random"};
+  for (int k = 0; k < 5; k++)
+    assert_says(arena_format(&test_memory()->lists, "  %-12s no: ", names[k]));
+  assert_says("  gray         yes");
+  assert_null(strstr(said, "textures"));
+  assert_null(strstr(said, "media"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_a_scene_uses_is_listed),
+      cmocka_unit_test(what_a_scene_does_not_need_is_said_so),
+  };
+  return cmocka_run_group_tests_name("scene_info", tests, NULL, NULL);
+}
