@@ -35,13 +35,30 @@ static const struct material_case material_cases[] = {
      true, NAN},
     {"'thindielectric'", true, 1},
     {"'thindielectric' 'float eta' 2.385", true, 1},
+    {"'coateddiffuse'", true, NAN},
+    {"'coateddiffuse' 'float roughness' .3 'rgb reflectance' [.8 .6 .2] 'float eta' 1.8", false,
+     NAN},
+    {"'coateddiffuse' 'float roughness' .1 'rgb albedo' [.6 .6 .6] 'float g' .4 'float thickness' "
+     ".3",
+     true, NAN},
+    {"'coatedconductor'", false, NAN},
+    {"'coatedconductor' 'float interface.roughness' .2 'float conductor.roughness' .1 "
+     "'rgb reflectance' [.7 .7 .7]",
+     true, NAN},
+    {"'mix' 'string materials' ['paper' 'mirror'] 'float amount' .3", true, NAN},
+    {"'mix' 'string materials' ['frosted' 'mirror'] 'float amount' .6", true, NAN},
 };
 enum { N_MATERIAL_CASES = (int)(sizeof material_cases / sizeof *material_cases) };
 
 // A sphere of that material ('name' for "name").
 static inline struct scene material_scene(int i) {
   char text[1024];
-  int n = snprintf(text, sizeof text, "WorldBegin LightSource 'point' Material %s Shape 'sphere'",
+  int n = snprintf(text, sizeof text,
+                   "WorldBegin LightSource 'point' "
+                   "MakeNamedMaterial 'paper' 'string type' 'diffusetransmission' "
+                   "MakeNamedMaterial 'mirror' 'string type' 'conductor' 'rgb reflectance' [1 1 1] "
+                   "MakeNamedMaterial 'frosted' 'string type' 'dielectric' 'float roughness' .2 "
+                   "Material %s Shape 'sphere'",
                    material_cases[i].text);
   assert_true(n > 0 && n < (int)sizeof text);
   for (char *c = text; *c; c++)
@@ -60,7 +77,7 @@ static inline struct bsdf material_bsdf(const struct scene *scene, double u) {
   return surface_bsdf(scene, &surface, u);
 }
 
-// What a material that draws from bsdf.u promises is its mean; the tests of single values skip it.
+// It draws from bsdf.u and, where it likes, from the directions: what it promises of f is the mean.
 static inline bool material_is_random(const struct scene *scene) {
   return material_of(scene)->needs & MATERIAL_RANDOM;
 }
