@@ -25,7 +25,7 @@ static struct vec vertex(const struct scene *scene, uint32_t row) {
   return vec(v[0], v[1], v[2]);
 }
 
-// Triangles are rows of scene.triangle, everything else of scene.quadric.
+// Triangles are rows of scene.triangle, disks of scene.quadric.
 static bool is_triangles(const struct shape *shape) {
   return shape->type->flat && strcmp(shape->type->name, "disk") != 0;
 }
@@ -200,8 +200,9 @@ static double box_distance(struct box box, struct vec p) {
 static double shape_distance(const struct scene *scene, const struct shape *shape,
                              const struct plane *plane) {
   if (is_triangles(shape)) return triangles_distance(scene, shape, plane);
-  const struct quadric *quadric = &scene->quadric[shape->local];
-  if (shape->type->flat ? disk_in_plane(quadric, plane) : on_sphere(quadric, plane->p))
+  const struct quadric *quadric = &scene->quadric[shape->local]; // of disks and spheres
+  bool sphere = strcmp(shape->type->name, "sphere") == 0;
+  if (shape->type->flat ? disk_in_plane(quadric, plane) : sphere && on_sphere(quadric, plane->p))
     return INFINITY;
   return box_distance(shape->type->bounds(scene, shape, shape->first), plane->p);
 }

@@ -36,63 +36,9 @@ static struct shape *current_shape(struct scene *scene) {
   return &scene->shape[scene->n_shapes - 1];
 }
 
-// Rows and primitives are counted in 32 bits; the last number means none.
-static bool check_room(struct params *params, uint64_t count, uint64_t more) {
+bool build_check_room(struct params *params, uint64_t count, uint64_t more) {
   if (count + more < UINT32_MAX) return true;
   return params_complain(params, "P", "the scene has more than 2^32 - 2 primitives or vertices");
-}
-
-static bool is_float(double x) { return x >= -(double)FLT_MAX && x <= (double)FLT_MAX; }
-
-static bool add_vertices(struct scene_builder *builder, struct params *params,
-                         const double (*vertex)[3], uint32_t n) {
-  struct scene *scene = builder->scene;
-  scene->position =
-      build_grow(builder->arena, scene->position, scene->n_positions, n, sizeof *scene->position);
-  for (uint32_t k = 0; k < n; k++) {
-    struct vec p =
-        transform_point(&builder->world_from_object, vec(vertex[k][0], vertex[k][1], vertex[k][2]));
-    if (!is_float(p.x) || !is_float(p.y) || !is_float(p.z))
-      return params_complain(params, "P", "vertex %u is too far away for a float", k);
-    float *to = scene->position[scene->n_positions + k];
-    to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
-  }
-  return true;
-}
-
-static bool add_rows(struct scene_builder *builder, struct params *params, const double *index,
-                     uint32_t n_triangles, uint32_t n_vertices) {
-  struct scene *scene = builder->scene;
-  scene->triangle = build_grow(builder->arena, scene->triangle, scene->n_triangles, n_triangles,
-                               sizeof *scene->triangle);
-  for (uint32_t k = 0; k < n_triangles; k++)
-    for (int j = 0; j < 3; j++) {
-      double row = index[3 * (ptrdiff_t)k + j];
-      if (!(row >= 0 && row < n_vertices))
-        return params_complain(params, "indices",
-                               "index number %td is %.0f, but the vertices are 0 to %u",
-                               3 * (ptrdiff_t)k + j + 1, row, n_vertices - 1);
-      scene->triangle[scene->n_triangles + k][j] = scene->n_positions + (uint32_t)row;
-    }
-  return true;
-}
-
-bool scene_add_triangles(struct scene_builder *builder, struct params *params,
-                         const double (*vertex)[3], uint32_t n_vertices, const double *index,
-                         uint32_t n_triangles) {
-  struct scene *scene = builder->scene;
-  if (!check_room(params, scene->n_positions, n_vertices)) return false;
-  if (!check_room(params, scene->n_primitives, n_triangles)) return false;
-  if (!add_vertices(builder, params, vertex, n_vertices)) return false;
-  if (!add_rows(builder, params, index, n_triangles, n_vertices)) return false;
-  struct shape *shape = current_shape(scene);
-  shape->local = scene->n_triangles;
-  shape->vertex = scene->n_positions;
-  shape->count = n_triangles;
-  scene->n_positions += n_vertices;
-  scene->n_triangles += n_triangles;
-  scene->n_primitives += n_triangles;
-  return true;
 }
 
 static bool box_is_finite(const struct box *box) {
@@ -104,7 +50,7 @@ static bool box_is_finite(const struct box *box) {
 bool scene_add_quadric(struct scene_builder *builder, struct params *params,
                        const struct quadric *quadric) {
   struct scene *scene = builder->scene;
-  if (!check_room(params, scene->n_primitives, 1)) return false;
+  if (!build_check_room(params, scene->n_primitives, 1)) return false;
   scene->quadric =
       build_grow(builder->arena, scene->quadric, scene->n_quadrics, 1, sizeof *scene->quadric);
   struct quadric *row = &scene->quadric[scene->n_quadrics];
@@ -202,22 +148,12 @@ static bool list_infinite(struct reader *reader) {
   return true;
 }
 
-static void count_names(struct reader *reader) {
-  struct inventory *inventory = &reader->builder.scene->inventory;
-  inventory->n_files = (uint32_t)reader->n_files + 1;
-  inventory->n_objects = (uint32_t)reader->objects.count;
-  inventory->n_instances = (uint32_t)reader->instances.count;
-  inventory->n_named_materials = (uint32_t)reader->material_names.count;
-  inventory->n_media = (uint32_t)reader->media.count;
-}
-
 bool scene_finish(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
   if (!read_finish_options(reader) || !read_check_materials(reader) || !read_instances(reader))
     return false;
   if (scene->n_primitives == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
-  count_names(reader);
   fill_tables(&reader->builder);
   return read_lights(reader) && choose_lights(reader) && list_infinite(reader);
 }

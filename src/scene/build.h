@@ -12,4 +12,7 @@ void *build_grow(struct arena *, void *array, uint32_t count, uint32_t more, siz
 uint32_t build_begin_shape(struct scene_builder *, const struct shape_type *, uint32_t material,
                            bool flip);
 
+// Rows and primitives are counted in 32 bits; the last number means none. False: too many.
+bool build_check_room(struct params *, uint64_t count, uint64_t more);
+
 #endif

@@ -1,6 +1,8 @@
 // The rows' intersect: the ray tests of scene/shape/*.h with everything worked out for one
 // primitive. Shapes of the same kind share the function, which is how the tree knows them.
+#include "scene/shape/cylinder.h"
 #include "scene/shape/disk.h"
+#include "scene/shape/patch.h"
 #include "scene/shape/sphere.h"
 #include "scene/shape/triangle.h"
 
@@ -59,4 +61,23 @@ bool sphere_intersect(const struct scene *scene, const struct shape *shape, uint
   cone_set(&cone, ray);
   bool leaving = ray->leaving == primitive;
   return sphere_hit(shape_quadric(scene, shape, primitive), &box, &cone, ray, leaving, t);
+}
+
+bool cylinder_intersect(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                        const struct ray *ray, double *t) {
+  struct box box = shape->type->bounds(scene, shape, primitive);
+  struct cone cone;
+  cone_set(&cone, ray);
+  bool leaving = ray->leaving == primitive;
+  return cylinder_hit(shape_quadric(scene, shape, primitive), &box, &cone, ray, leaving, t);
+}
+
+bool patch_intersect(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                     const struct ray *ray, double *t) {
+  float vertex[4][3];
+  patch_gather(scene, shape, primitive, vertex);
+  struct box box = patch_box(vertex);
+  struct cone cone;
+  cone_set(&cone, ray);
+  return patch_hit(vertex, &box, &cone, ray, ray->leaving == primitive, t);
 }

@@ -5,6 +5,8 @@
 #include "base/file.h"
 #include "scene/scene.h"
 
+struct mesh; // mesh/mesh.h
+
 struct named_texture {
   const char *name;
   struct texture texture;
@@ -40,11 +42,10 @@ struct scene_builder {
   } materials; // by MakeNamedMaterial directives so far
 };
 
-// For shapes: append world-space vertices (rounded here, once, to float; a non-finite one is a
-// problem), triangles (rows counted from the first vertex of this shape) or one quadric.
-// They return false with the problem set in params.
-bool scene_add_triangles(struct scene_builder *, struct params *, const double (*vertex)[3],
-                         uint32_t n_vertices, const double *index, uint32_t n_triangles);
+// For shapes: append a mesh or one quadric to the scene, in world space. Vertices are rounded here,
+// once, to float; a non-finite one is a problem. Quads are bilinear patches: the shape becomes a
+// bilinearmesh, or gets one beside it for them. They return false with the problem set in params.
+bool scene_add_mesh(struct scene_builder *, struct params *, const struct mesh *);
 bool scene_add_quadric(struct scene_builder *, struct params *, const struct quadric *);
 
 // For meshes and images: the bytes of a file named by parameter `name`, relative to the folder of the

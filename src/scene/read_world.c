@@ -101,7 +101,7 @@ bool read_shape(struct reader *reader, struct call *call) {
     return problem_at(reader->problem, call->place, "%s: an area light cannot move",
                       call->params.directive);
   if (!read_place_shape(reader, type, now, &call->params, &row)) return false;
-  if (now->area_light)
+  for (; now->area_light && row < reader->builder.scene->n_shapes; row++) // a mesh may be two
     add_pending_light(reader, now->area_light->type, &now->area_light->params, row);
   return true;
 }

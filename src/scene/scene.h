@@ -89,9 +89,11 @@ struct shape_type {
   // Geometric normal at p on the primitive, unit length, flip applied.
   struct vec (*normal)(const struct scene *, const struct shape *, uint32_t primitive, struct vec p);
   double (*area)(const struct scene *, const struct shape *, uint32_t primitive);
-  // A point uniform over the primitive's area (pdf_area = 1/area), with its normal.
+  // A point of the primitive, with its normal; pdf_area = density / area.
   void (*sample)(const struct scene *, const struct shape *, uint32_t primitive, double u0, double u1,
                  struct vec *p, struct vec *ng);
+  // Of `sample` at p, relative to the mean; NULL: 1, uniform.
+  double (*density)(const struct scene *, const struct shape *, uint32_t primitive, struct vec p);
 };
 
 // ---- materials ----
@@ -237,12 +239,6 @@ struct scene_settings {
   const char *kernel, *law, *direct; // NULL where the file says nothing
 };
 
-// What the file holds that the arrays no longer show, for `photonlab info`.
-struct inventory {
-  uint32_t n_files, n_objects, n_instances, n_named_materials, n_media, n_textures;
-  uint32_t *textures; // by row of texture_types, floats and spectra
-};
-
 struct scene {
   const char *path;
   uint64_t hash; // xxh64 over the bytes of every file read, in order
@@ -251,7 +247,7 @@ struct scene {
   struct scene_settings settings;
 
   float (*position)[3];    // vertices in world space, rounded once to float
-  float (*normal)[3];      // shading normals in world space, unit length; of the meshes that have them
+  float (*normal)[3];      // of vertices, in world space, the longest of a mesh of unit length (build_mesh.c)
   float (*uv)[2];
   uint32_t (*triangle)[3]; // rows of position
   uint32_t (*patch)[4];    // rows of position: p00, p10, p01, p11
@@ -268,7 +264,6 @@ struct scene {
       n_materials, n_lights, n_infinite, n_motions;
 
   struct box bounds;       // of all primitives, at all times
-  struct inventory inventory;
 };
 
 // Reads a pbrt-v4 file (the subset of README) and everything in it.

@@ -2,8 +2,8 @@
 // pbrt-v4: radiance L leaves the side of the geometric normal (n.w >= 0), or both sides. pbrt's
 // shape is our primitive, so a `power` P [W] is what each primitive emits: L = P / (pi A), A its
 // own area (half of it if two-sided), for each unit of `rgb L`. Primitives are chosen in proportion
-// to their power: every photon carries the same flux, and radiance / pdf_area is the same
-// everywhere.
+// to their power: where the shape's samples are uniform every photon carries the same flux, and
+// radiance / pdf_area is the same everywhere.
 #include "scene/light/light.h"
 
 struct diffuse {
@@ -16,6 +16,12 @@ struct diffuse {
 
 static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
   return shape->type->area(scene, shape, primitive);
+}
+
+// Of the points that the shape samples, relative to the mean.
+static double density(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                      struct vec p) {
+  return shape->type->density ? shape->type->density(scene, shape, primitive, p) : 1;
 }
 
 // What a primitive weighs in the choice. One without area never emits.
@@ -59,10 +65,10 @@ static void primitive_radiance(const struct scene *scene, const struct diffuse *
   for (int c = 0; c < 3; c++) rgb[c] = diffuse->L[c] / divisor;
 }
 
-static double pdf_area(const struct scene *scene, const struct diffuse *diffuse,
-                       uint32_t primitive) {
-  double a = area(scene, diffuse->shape, primitive);
-  return diffuse->by_power ? 1 / (a * cdf_total(diffuse)) : 1 / cdf_total(diffuse);
+static double pdf_area(const struct scene *scene, const struct diffuse *diffuse, uint32_t primitive,
+                       struct vec p) {
+  double a = diffuse->by_power ? area(scene, diffuse->shape, primitive) : 1;
+  return density(scene, diffuse->shape, primitive, p) / (a * cdf_total(diffuse));
 }
 
 // The primitive k with cdf[k] <= x < cdf[k + 1]: bisection keeps both true.
@@ -102,7 +108,8 @@ static void emit(const struct scene *scene, const struct light *light, const dou
     if (back) n = vec_scale(n, -1);
   }
   out->ray = (struct ray){p, light_sample_cosine(n, u2, u[3]), INFINITY, primitive};
-  for (int c = 0; c < 3; c++) out->flux[c] = light->power[c];
+  double relative = density(scene, diffuse->shape, primitive, p);
+  for (int c = 0; c < 3; c++) out->flux[c] = light->power[c] / relative;
 }
 
 // The cosine at the emitter, 0 where it does not shine.
@@ -122,7 +129,7 @@ static bool sample(const struct scene *scene, const struct light *light, struct 
   struct vec wi = vec_scale(to_light, 1 / distance);
   double cosine = emitted_cosine(diffuse, n, vec_scale(wi, -1));
   if (!(cosine > 0)) return false;
-  double pdf = pdf_area(scene, diffuse, primitive) * d2 / cosine, radiance[3];
+  double pdf = pdf_area(scene, diffuse, primitive, q) * d2 / cosine, radiance[3];
   primitive_radiance(scene, diffuse, primitive, radiance);
   *out = (struct light_sample){
       .wi = wi, .distance = distance, .pdf_solid_angle = pdf, .primitive = primitive};
@@ -136,7 +143,7 @@ static double pdf(const struct scene *scene, const struct light *light, struct v
   double cosine = emitted_cosine(diffuse, surface->ng, vec_scale(wi, -1));
   if (!(cosine > 0)) return 0; // as `sample`, which never gives this point
   struct vec v = vec_sub(surface->p, p);
-  return pdf_area(scene, diffuse, surface->primitive) * vec_dot(v, v) / cosine;
+  return pdf_area(scene, diffuse, surface->primitive, surface->p) * vec_dot(v, v) / cosine;
 }
 
 static void radiance(const struct scene *scene, const struct light *light,

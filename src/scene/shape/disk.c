@@ -30,6 +30,13 @@ static struct vec normal(const struct scene *scene, const struct shape *shape, u
   return quadric_normal(quadric_of(scene, shape), shape, vec(0, 0, 1));
 }
 
+// v goes from the rim to the middle.
+static void detail(const struct scene *scene, const struct shape *shape, struct surface *surface) {
+  const struct quadric *q = quadric_of(scene, shape);
+  struct vec p = quadric_detail(q, surface);
+  surface->uv[1] = (q->radius - vec_length(vec(p.x, p.y, 0))) / (q->radius - q->inner_radius);
+}
+
 // A plane figure is stretched evenly by any affine map, so samples stay uniform.
 static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
   (void)primitive;
@@ -57,6 +64,7 @@ const struct shape_type shape_disk = {
     .read = read,
     .bounds = bounds,
     .intersect = disk_intersect,
+    .detail = detail,
     .normal = normal,
     .area = area,
     .sample = sample,

@@ -1,10 +1,17 @@
-// What sphere and disk share: a row of scene.quadric, reading phimax, normals through a transform.
+// What sphere, disk and cylinder share: a row of scene.quadric, reading phimax, normals and texture
+// coordinates through a transform.
 #ifndef SCENE_SHAPE_QUADRIC_H
 #define SCENE_SHAPE_QUADRIC_H
 
 #include "numeric/elementary.h"
 #include "scene/box.h"
 #include "scene/read.h"
+
+#include <assert.h>
+
+// Matrices in text files carry six digits or more, so that a written rotation is one to about 1e-6.
+// Within this tolerance the density of uniform samples is off by at most twice as much, relative.
+static const double quadric_similarity_tolerance = 1e-5;
 
 static const double quadric_two_pi = 0x1.921fb54442d18p+2;
 
@@ -38,6 +45,28 @@ static inline struct vec quadric_normal(const struct quadric *quadric, const str
 static inline void quadric_angle(const struct quadric *quadric, double u, double *cosine,
                                  double *sine) {
   num_sincos_turns(u * (quadric->phi_max / quadric_two_pi), sine, cosine);
+}
+
+// Whether the images of the axes are perpendicular, and those of x and y, or of all three, of equal
+// length: uniform points of a cylinder, or of a sphere, then stay uniform.
+static inline bool quadric_is_even(const struct transform *t, bool all) {
+  struct vec x = transform_direction(t, vec(1, 0, 0)), y = transform_direction(t, vec(0, 1, 0)),
+             z = transform_direction(t, vec(0, 0, 1));
+  double xx = vec_dot(x, x), yy = vec_dot(y, y), zz = vec_dot(z, z);
+  double most = quadric_similarity_tolerance * xx;
+  double most_z = quadric_similarity_tolerance * sqrt(xx * zz);
+  return fabs(yy - xx) <= most && fabs(vec_dot(x, y)) <= most && fabs(vec_dot(x, z)) <= most_z &&
+         fabs(vec_dot(y, z)) <= most_z && (!all || fabs(zz - xx) <= most);
+}
+
+// uv[0] = phi / phimax and dp/du, which all quadrics share; gives p in object space.
+static inline struct vec quadric_detail(const struct quadric *quadric, struct surface *surface) {
+  struct vec p = transform_point(&quadric->object_from_world, surface->p);
+  double phi = num_atan2(p.y, p.x);
+  surface->uv[0] = (phi < 0 ? phi + quadric_two_pi : phi) / quadric->phi_max;
+  struct vec dpdu = vec(-quadric->phi_max * p.y, quadric->phi_max * p.x, 0);
+  surface->dpdu = transform_direction(&quadric->world_from_object, dpdu);
+  return p;
 }
 
 #endif

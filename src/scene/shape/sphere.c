@@ -3,23 +3,6 @@
 #include "scene/shape/sphere.h"
 #include "scene/shape/quadric.h"
 
-#include <assert.h>
-
-// Matrices in text files carry six digits or more, so that a written rotation is one to about 1e-6.
-// Within this tolerance the density of uniform samples is off by at most twice as much, relative.
-static const double similarity_tolerance = 1e-5;
-
-// The squared scale of a rotation with uniform scale; false if the matrix is anything else.
-static bool similarity(const struct transform *t, double *scale2) {
-  struct vec x = transform_direction(t, vec(1, 0, 0)), y = transform_direction(t, vec(0, 1, 0)),
-             z = transform_direction(t, vec(0, 0, 1));
-  *scale2 = (vec_dot(x, x) + vec_dot(y, y) + vec_dot(z, z)) / 3;
-  double most = similarity_tolerance * *scale2;
-  return fabs(vec_dot(x, x) - *scale2) <= most && fabs(vec_dot(y, y) - *scale2) <= most &&
-         fabs(vec_dot(z, z) - *scale2) <= most && fabs(vec_dot(x, y)) <= most &&
-         fabs(vec_dot(y, z)) <= most && fabs(vec_dot(z, x)) <= most;
-}
-
 static bool read(struct scene_builder *builder, struct params *params) {
   struct quadric q = {.radius = quadric_read_radius(params),
                       .phi_max = quadric_read_phi_max(params)};
@@ -29,8 +12,7 @@ static bool read(struct scene_builder *builder, struct params *params) {
     params_complain(params, "zmin", "zmin must be in [-radius, radius)");
   if (!(q.z_max > q.z_min && q.z_max <= q.radius))
     params_complain(params, "zmax", "zmax must be in (zmin, radius]");
-  double scale2;
-  if (builder->emits && !similarity(&builder->world_from_object, &scale2))
+  if (builder->emits && !quadric_is_even(&builder->world_from_object, true))
     params_complain(params, "radius",
                     "a sphere that emits cannot be stretched (its points would not be sampled "
                     "uniformly); use rotations, translations and equal scales");
@@ -62,14 +44,24 @@ static struct vec normal(const struct scene *scene, const struct shape *shape, u
   return quadric_normal(q, shape, transform_point(&q->object_from_world, p));
 }
 
+// v goes with the polar angle, from zmin to zmax.
+static void detail(const struct scene *scene, const struct shape *shape, struct surface *surface) {
+  const struct quadric *q = quadric_of(scene, shape);
+  double z = quadric_detail(q, surface).z / q->radius;
+  double theta = num_acos(z < -1 ? -1 : z > 1 ? 1 : z); // p is rounded
+  double first = num_acos(q->z_min / q->radius), last = num_acos(q->z_max / q->radius);
+  surface->uv[1] = (theta - first) / (last - first);
+}
+
 // Archimedes: radius * phi_max * height. Only of spheres that are not stretched: others never emit.
 static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
   (void)primitive;
   const struct quadric *q = quadric_of(scene, shape);
-  double scale2;
-  bool even = similarity(&q->world_from_object, &scale2);
-  assert(even);
-  (void)even;
+  const struct transform *t = &q->world_from_object;
+  struct vec x = transform_direction(t, vec(1, 0, 0)), y = transform_direction(t, vec(0, 1, 0)),
+             z = transform_direction(t, vec(0, 0, 1));
+  assert(quadric_is_even(t, true));
+  double scale2 = (vec_dot(x, x) + vec_dot(y, y) + vec_dot(z, z)) / 3;
   return scale2 * q->radius * q->phi_max * (q->z_max - q->z_min);
 }
 
@@ -93,6 +85,7 @@ const struct shape_type shape_sphere = {
     .read = read,
     .bounds = bounds,
     .intersect = sphere_intersect,
+    .detail = detail,
     .normal = normal,
     .area = area,
     .sample = sample,

@@ -80,13 +80,20 @@ static inline void triangle_gather(const struct scene *scene, const struct shape
 }
 
 // Whether the ray leaves a triangle that has `vertex` wholly in its plane or behind it: each vertex
-// is one of its own or not on the side the ray goes to. Exactly, such a ray never meets it at t > 0;
-// rounded, a neighbour in the same plane would shadow a point on the edge they share.
+// is one of its own or not on the side the ray goes to. Exactly, such a ray never meets it at t >
+// 0; rounded, a neighbour in the same plane would shadow a point on the edge they share.
 bool triangle_is_left_behind(const struct scene *, const struct ray *, const float vertex[3][3]);
 
-// shape_type.intersect of every shape made of triangles; the tree knows triangles by it
-// (scene/intersect.c).
+// What every shape made of triangles does (scene/intersect.c, scene/triangle_mesh.c); the tree
+// knows triangles by triangle_intersect.
 bool triangle_intersect(const struct scene *, const struct shape *, uint32_t primitive,
                         const struct ray *, double *t);
+struct box triangle_bounds(const struct scene *, const struct shape *, uint32_t primitive);
+void triangle_detail(const struct scene *, const struct shape *, struct surface *);
+struct vec triangle_normal(const struct scene *, const struct shape *, uint32_t primitive,
+                           struct vec p);
+double triangle_area(const struct scene *, const struct shape *, uint32_t primitive);
+void triangle_sample(const struct scene *, const struct shape *, uint32_t primitive, double u0,
+                     double u1, struct vec *p, struct vec *ng);
 
 #endif

@@ -1,83 +1,32 @@
-// Shape "trianglemesh": `point3 P` and `integer indices` (which may be absent for one triangle).
-// The geometric normal is pbrt's: (p0 - p2) x (p1 - p2).
-#include "scene/read.h"
+// Shape "trianglemesh": `point3 P`, `integer indices` (which may be absent for one triangle),
+// `normal N`, `point2 uv`. `faceIndices`, which only Ptex textures read, mean nothing here.
+#include "scene/shape/mesh_params.h"
 #include "scene/shape/triangle.h"
 
-#include <string.h>
-
 static bool read(struct scene_builder *builder, struct params *params) {
-  static const double only_triangle[3] = {0, 1, 2};
-  static const char *const later[] = {"N", "uv", "S", "st"};
-  for (int k = 0; k < params->count; k++)
-    for (int j = 0; j < 4; j++)
-      if (strcmp(params->item[k].name, later[j]) == 0)
-        return params_complain(params, later[j],
-                               "\"%s\" is not in this version (no shading normals, no textures); "
-                               "take it out",
-                               later[j]);
-  ptrdiff_t n_numbers, n_indices;
-  const double *index = params_array(params, "integer", "indices", &n_indices);
-  const double *point = params_array(params, "point3", "P", &n_numbers);
-  if (!params_finish(params)) return false;
-  if (!point) return params_complain(params, "P", "\"point3 P\" is missing");
-  if (!index && n_numbers != 9)
-    return params_complain(params, "P", "\"integer indices\" is missing");
-  if (n_indices % 3)
-    return params_complain(params, "indices", "%td indices are not a multiple of 3", n_indices);
-  ptrdiff_t n_vertices = n_numbers / 3, n_triangles = index ? n_indices / 3 : 1;
-  if (n_vertices >= UINT32_MAX || n_triangles >= UINT32_MAX)
-    return params_complain(params, "P", "more than 2^32 vertices or triangles");
-  return scene_add_triangles(builder, params, (const double(*)[3])point, (uint32_t)n_vertices,
-                             index ? index : only_triangle, (uint32_t)n_triangles);
-}
-
-static struct box bounds(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
-  float vertex[3][3];
-  triangle_gather(scene, shape, primitive, vertex);
-  return triangle_box(vertex);
-}
-
-// Twice the area long, before the flip.
-static struct vec cross(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
-  float vertex[3][3];
-  triangle_gather(scene, shape, primitive, vertex);
-  return triangle_cross(vertex);
-}
-
-// A triangle without area is never hit, so its normal (zero) is never asked for.
-static struct vec normal(const struct scene *scene, const struct shape *shape, uint32_t primitive,
-                         struct vec p) {
-  (void)p;
-  struct vec n = cross(scene, shape, primitive);
-  double length = vec_length(n);
-  return length > 0 ? vec_scale(n, (shape->flip ? -1 : 1) / length) : vec(0, 0, 0);
-}
-
-static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
-  return 0.5 * vec_length(cross(scene, shape, primitive));
-}
-
-// Barycentric (1 - s, s (1 - u1), s u1), s = sqrt(u0): a line across p0 in proportion to its
-// length, then a point of the line.
-static void sample(const struct scene *scene, const struct shape *shape, uint32_t primitive,
-                   double u0, double u1, struct vec *p, struct vec *ng) {
-  float vertex[3][3];
-  triangle_gather(scene, shape, primitive, vertex);
-  struct vec p0 = triangle_vertex(vertex[0]), p1 = triangle_vertex(vertex[1]),
-             p2 = triangle_vertex(vertex[2]);
-  double s = sqrt(u0);
-  *p = vec_along(vec_along(p0, vec_sub(p1, p0), s * (1 - u1)), vec_sub(p2, p0), s * u1);
-  *ng = normal(scene, shape, primitive, *p);
+  struct mesh mesh;
+  ptrdiff_t n_indices, n_faces;
+  if (!mesh_params_vertices(params, &mesh) || !mesh_params_attributes(params, &mesh)) return false;
+  if (input_is_given(params, "S"))
+    return params_complain(params, "S",
+                           "\"S\" is not in this version; without it tangents follow uv");
+  uint32_t *index = mesh_params_indices(params, 3, mesh.n_vertices, builder->arena, &n_indices);
+  params_array(params, "integer", "faceIndices", &n_faces);
+  if (!index || !params_finish(params)) return false;
+  mesh.triangle = (uint32_t(*)[3])index;
+  mesh.n_triangles = (uint32_t)(n_indices / 3);
+  return scene_add_mesh(builder, params, &mesh);
 }
 
 const struct shape_type shape_trianglemesh = {
     .name = "trianglemesh",
-    .about = "triangles from points and indices",
+    .about = "triangles from points and indices, with normals and uv",
     .flat = true,
     .read = read,
-    .bounds = bounds,
+    .bounds = triangle_bounds,
     .intersect = triangle_intersect,
-    .normal = normal,
-    .area = area,
-    .sample = sample,
+    .detail = triangle_detail,
+    .normal = triangle_normal,
+    .area = triangle_area,
+    .sample = triangle_sample,
 };
