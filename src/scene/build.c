@@ -148,12 +148,22 @@ static bool list_infinite(struct reader *reader) {
   return true;
 }
 
+static void count_names(struct reader *reader) {
+  struct inventory *inventory = &reader->builder.scene->inventory;
+  inventory->n_files = (uint32_t)reader->n_files + 1;
+  inventory->n_objects = (uint32_t)reader->objects.count;
+  inventory->n_instances = (uint32_t)reader->instances.count;
+  inventory->n_named_materials = (uint32_t)reader->material_names.count;
+  inventory->n_media = (uint32_t)reader->media.count;
+}
+
 bool scene_finish(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
   if (!read_finish_options(reader) || !read_check_materials(reader) || !read_instances(reader))
     return false;
   if (scene->n_primitives == 0)
     return problem_at(reader->problem, reader->lexer.token.place, "the scene has no Shape");
+  count_names(reader);
   fill_tables(&reader->builder);
   return read_lights(reader) && choose_lights(reader) && list_infinite(reader);
 }

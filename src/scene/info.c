@@ -76,21 +76,69 @@ static void print_shapes(const struct scene *scene, FILE *out) {
   }
 }
 
-static void print_materials(const struct scene *scene, FILE *out) {
-  fprintf(out, "materials\n");
-  for (const struct material_type *const *type = material_types; *type; type++) {
-    uint32_t shapes = 0, black = 0, coloured = 0;
-    for (uint32_t k = 0; k < scene->n_shapes; k++) {
-      const struct material *material = &scene->material[scene->shape[k].material];
-      if (material->type != *type) continue;
-      shapes++;
-      black += material->type->is_black && material->type->is_black(material);
-      coloured += !material->type->is_gray(scene, material);
-    }
-    if (shapes)
-      fprintf(out, "  %-12s on %" PRIu32 " shapes: %" PRIu32 " black, %" PRIu32 " coloured\n",
-              (*type)->name, shapes, black, coloured);
+static uint32_t count_shapes(const struct scene *scene, bool (*is)(const struct shape *)) {
+  uint32_t count = 0;
+  for (uint32_t k = 0; k < scene->n_shapes; k++) count += is(&scene->shape[k]);
+  return count;
+}
+
+static bool has_alpha(const struct shape *shape) { return shape->alpha; }
+static bool has_normals(const struct shape *shape) { return shape->normal != ROW_NONE; }
+
+static void print_shape_uses(const struct scene *scene, FILE *out) {
+  const struct inventory *inventory = &scene->inventory;
+  uint32_t alpha = count_shapes(scene, has_alpha), normals = count_shapes(scene, has_normals);
+  if (inventory->n_objects)
+    fprintf(out, "  objects      %" PRIu32 ", %" PRIu32 " instances (primitives of their own)\n",
+            inventory->n_objects, inventory->n_instances);
+  if (alpha) fprintf(out, "  alpha        on %" PRIu32 " shapes\n", alpha);
+  if (normals) fprintf(out, "  normals      on %" PRIu32 " shapes\n", normals);
+  if (scene->n_motions) fprintf(out, "  moving       %" PRIu32 " shapes\n", scene->n_motions);
+}
+
+struct material_use {
+  uint32_t shapes, black, coloured, detailed, delta;
+};
+
+static struct material_use use_of(const struct scene *scene, const struct material_type *type) {
+  struct material_use use = {0};
+  for (uint32_t k = 0; k < scene->n_shapes; k++) {
+    const struct material *material = &scene->material[scene->shape[k].material];
+    if (material->type != type) continue;
+    use.shapes++;
+    use.black += type->is_black && type->is_black(material);
+    use.coloured += !type->is_gray(scene, material);
+    use.detailed += (material->needs & MATERIAL_DETAIL) != 0;
+    use.delta += (material->needs & MATERIAL_DELTA) != 0;
   }
+  return use;
+}
+
+static void print_use(FILE *out, uint32_t count, const char *what) {
+  if (count) fprintf(out, ", %" PRIu32 " %s", count, what);
+}
+
+static void print_materials(const struct scene *scene, FILE *out) {
+  fprintf(out, "materials    %" PRIu32 " named\n", scene->inventory.n_named_materials);
+  for (const struct material_type *const *type = material_types; *type; type++) {
+    struct material_use use = use_of(scene, *type);
+    if (!use.shapes) continue;
+    fprintf(out, "  %-20s on %" PRIu32 " shapes", (*type)->name, use.shapes);
+    print_use(out, use.black, "black");
+    print_use(out, use.coloured, "coloured");
+    print_use(out, use.detailed, "with textures or directions");
+    print_use(out, use.delta, "with delta lobes");
+    fprintf(out, "\n");
+  }
+}
+
+static void print_textures(const struct scene *scene, FILE *out) {
+  const struct inventory *inventory = &scene->inventory;
+  if (!inventory->n_textures) return;
+  fprintf(out, "textures     %" PRIu32 "\n", inventory->n_textures);
+  for (int k = 0; texture_types[k]; k++)
+    if (inventory->textures[k])
+      fprintf(out, "  %-20s %" PRIu32 "\n", texture_types[k]->name, inventory->textures[k]);
 }
 
 static void print_light(const struct light *light, FILE *out) {
@@ -116,16 +164,26 @@ static const char *applies(enum skip bit, const struct scene *scene,
   case SKIP_GRAY:
     return features->gray ? "yes" : "no, a spectrum is coloured";
   case SKIP_STATIC_EYE:
+    if (features->random_eye) return "no, what a pixel's centre sees is random";
     return scene->settings.centre ? "yes" : "where pixel centres are asked for";
   default:
     return "wherever it can";
   }
 }
 
+static void print_feature(FILE *out, const char *name, bool there, const char *without) {
+  fprintf(out, "  %-12s %s%s\n", name, there ? "yes" : "no: ", there ? "" : without);
+}
+
 static void print_features(const struct scene *scene, FILE *out) {
   struct features features = scene_features(scene);
-  fprintf(out, "features     %s, %d channel%s\n", features.gray ? "gray" : "coloured",
-          features.n_channels, features.n_channels == 1 ? "" : "s");
+  fprintf(out, "features\n");
+  print_feature(out, "colour", !features.gray, "one channel is enough");
+  print_feature(out, "motion", features.motion, "there is no time");
+  print_feature(out, "see-through", features.see_through, "a ray ends where it hits");
+  print_feature(out, "background", features.background, "a ray that hits nothing sees nothing");
+  print_feature(out, "random", features.random_materials, "no material is random at a point");
+  print_feature(out, "random eye", features.random_eye, "a pixel's centre always sees the same");
   fprintf(out, "skips        (--no-skip=NAME switches one off; no result changes)\n");
   for (int k = 0; k < n_skip_rows; k++)
     fprintf(out, "  %-12s %s: %s\n", skip_rows[k].name, applies(skip_rows[k].bit, scene, &features),
@@ -135,13 +193,19 @@ static void print_features(const struct scene *scene, FILE *out) {
 void scene_info(const struct scene *scene, FILE *out) {
   const struct box *box = &scene->bounds;
   fprintf(out, "scene        %s\n", scene->path);
-  fprintf(out, "  hash       %016" PRIx64 " (xxh64)\n", scene->hash);
+  fprintf(out,
+          "  hash       %016" PRIx64 " (xxh64 of %" PRIu32 " scene file%s and all they name)\n",
+          scene->hash, scene->inventory.n_files, scene->inventory.n_files == 1 ? "" : "s");
   fprintf(out, "  bounds     %g %g %g to %g %g %g\n", (double)box->lo[0], (double)box->lo[1],
           (double)box->lo[2], (double)box->hi[0], (double)box->hi[1], (double)box->hi[2]);
   print_camera(scene, out);
   print_settings(&scene->settings, out);
   print_shapes(scene, out);
+  print_shape_uses(scene, out);
   print_materials(scene, out);
+  print_textures(scene, out);
   print_lights(scene, out);
+  if (scene->inventory.n_media)
+    fprintf(out, "media        %" PRIu32 ", nothing is in them\n", scene->inventory.n_media);
   print_features(scene, out);
 }

@@ -16,6 +16,16 @@ static const struct texture_type *find_texture(struct reader *reader, struct cal
   return NULL;
 }
 
+// For `photonlab info`.
+static void count_texture(struct reader *reader, const struct texture_type *type) {
+  struct inventory *inventory = &reader->builder.scene->inventory;
+  int row = 0, n = 0;
+  while (texture_types[n]) row = texture_types[n] == type ? n : row, n++;
+  if (!inventory->textures) inventory->textures = arena_new(reader->builder.arena, uint32_t, n);
+  inventory->textures[row]++;
+  inventory->n_textures++;
+}
+
 // Texture "name" "kind" "type": floats and spectra have names of their own.
 bool read_texture(struct reader *reader, struct call *call) {
   struct scene_builder *builder = &reader->builder;
@@ -37,5 +47,6 @@ bool read_texture(struct reader *reader, struct call *call) {
   entry.name = arena_string(builder->arena, call->title, (ptrdiff_t)strlen(call->title));
   struct named_textures *list = spectrum ? &builder->spectrum_textures : &builder->float_textures;
   *arena_push(builder->arena, list) = entry;
+  count_texture(reader, entry.texture.type);
   return true;
 }

@@ -239,6 +239,12 @@ struct scene_settings {
   const char *kernel, *law, *direct; // NULL where the file says nothing
 };
 
+// What the file holds that the arrays no longer show, for `photonlab info`.
+struct inventory {
+  uint32_t n_files, n_objects, n_instances, n_named_materials, n_media, n_textures;
+  uint32_t *textures; // by row of texture_types, floats and spectra
+};
+
 struct scene {
   const char *path;
   uint64_t hash; // xxh64 over the bytes of every file read, in order
@@ -264,6 +270,7 @@ struct scene {
       n_materials, n_lights, n_infinite, n_motions;
 
   struct box bounds;       // of all primitives, at all times
+  struct inventory inventory;
 };
 
 // Reads a pbrt-v4 file (the subset of README) and everything in it.

@@ -144,7 +144,7 @@ static const struct {
     {W "Material \"dielectric\" \"float eta\" 0", 2, 23, "must be above 0, and is 0"},
     {W "Material \"diffusetransmission\" \"rgb transmittance\" [1 0 .5] \"float scale\" 2", 2, 32,
      "must not exceed 1, and is 2"},
-    {W "LightSource \"infinite\"", 2, 13, "\"infinite\" is not in this version"},
+    {W "LightSource \"infinit\"", 2, 13, "did you mean \"infinite\"?"},
     {W "LightSource \"diffuse\"", 2, 13, "not in this version"},
     {W "AreaLightSource \"point\"", 2, 17, "not in this version"},
     {"Camera \"realistic\"", 1, 8, "use \"perspective\""},
