@@ -2,10 +2,6 @@
 
 #include "numeric/sum.h"
 
-struct disc disc_of(const struct kernel *kernel, double r, uint64_t n_emitted) {
-  return (struct disc){kernel, r, kernel->constants(2).c / (r * r * (double)n_emitted)};
-}
-
 static void gather_reserve(struct gather *gather, int64_t count, int n_channels,
                            struct arena *arena) {
   if (count <= gather->capacity) return;
@@ -38,16 +34,21 @@ static int weigh(struct gather *gather, const struct photons *photons,
   return kept;
 }
 
-// weight[j] = psi(d_j / r) / c, zero outside the disc.
-static void evaluate(struct gather *gather, const struct disc *disc, int n) {
+// weight[j] = psi(d_j / r) / c, zero outside the disc; how many are within.
+static int64_t evaluate(struct gather *gather, const struct disc *disc, int n) {
+  int64_t within = 0;
   double inverse_r2 = 1 / (disc->r * disc->r);
   for (int j = 0; j < n; j++) {
     double t2 = gather->distance2[j] * inverse_r2;
     gather->t2[j] = t2 < 1 ? t2 : 0;
   }
   disc->kernel->shape(gather->t2, gather->weight, n);
-  for (int j = 0; j < n; j++)
-    gather->weight[j] = gather->distance2[j] * inverse_r2 < 1 ? gather->weight[j] : 0;
+  for (int j = 0; j < n; j++) {
+    bool in = gather->distance2[j] * inverse_r2 < 1;
+    gather->weight[j] = in ? gather->weight[j] : 0;
+    within += in;
+  }
+  return within;
 }
 
 static double weighted_sum(const double *weight, const double *value, int n) {
@@ -58,13 +59,16 @@ static double weighted_sum(const double *weight, const double *value, int n) {
 
 void gather_point(struct gather *gather, const struct photons *photons, const struct grid *grid,
                   const struct eye_point *point, int depth, const struct disc *disc, int n_discs,
-                  double *out, long stride, struct arena *arena) {
+                  int64_t *count, double *out, long stride, struct arena *arena) {
   gather_reserve(gather, grid->count, photons->n_channels, arena);
-  int found = grid_find(grid, point->p, gather->photon, gather->distance2);
+  double r = 0;
+  for (int e = 0; e < n_discs; e++) r = r < disc[e].r ? disc[e].r : r;
+  int found = grid_find(grid, point->p, r, gather->photon, gather->distance2);
   int n = weigh(gather, photons, point, depth, found);
   if (n == 0) return;
   for (int e = 0; e < n_discs; e++) {
-    evaluate(gather, &disc[e], n);
+    int64_t within = evaluate(gather, &disc[e], n);
+    if (count) count[e] = within;
     for (int c = 0; c < photons->n_channels; c++)
       out[e * stride + c] +=
           point->weight[c] * (disc[e].scale * weighted_sum(gather->weight, gather->value[c], n));

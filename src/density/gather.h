@@ -11,13 +11,18 @@
 #include "density/kernel.h"
 #include "walk/eye.h"
 
-// One estimator at this iteration.
+// One estimator at one point and iteration.
 struct disc {
   const struct kernel *kernel;
   double r;     // support
-  double scale; // c / (r^2 n_emitted), c = psi(0)
+  double scale; // c / (r^2 n_emitted)
 };
-struct disc disc_of(const struct kernel *, double r, uint64_t n_emitted);
+
+// c = psi(0), kernel->constants(2).c
+static inline struct disc disc_of(const struct kernel *kernel, double c, double r,
+                                  uint64_t n_emitted) {
+  return (struct disc){kernel, r, c / (r * r * (double)n_emitted)};
+}
 
 // Scratch for queries on grids of up to `capacity` photons.
 struct gather {
@@ -27,10 +32,11 @@ struct gather {
 };
 
 // Adds to out[disc * stride + c] the radiance towards the eye at `point`. The grid's r is at least
-// every disc's. Sums have the shape of numeric/sum.h over the photons found within the grid's r.
-// depth: pbrt's maxdepth of the whole path.
+// every disc's. Sums have the shape of numeric/sum.h over the photons in the largest disc.
+// depth: pbrt's maxdepth of the whole path. count: NULL, or the photons within each disc that the
+// point scatters.
 void gather_point(struct gather *, const struct photons *, const struct grid *,
                   const struct eye_point *, int depth, const struct disc *, int n_discs,
-                  double *out, long stride, struct arena *);
+                  int64_t *count, double *out, long stride, struct arena *);
 
 #endif

@@ -83,10 +83,9 @@ void grid_build(struct grid *grid, const struct photons *photons, double r, stru
 }
 
 // Photons of one cell within r of p, appended behind the first `found`.
-static int find_in_cell(const struct grid *grid, struct grid_cell cell, struct vec p, int found,
-                        uint32_t *photon, double *distance2) {
+static int find_in_cell(const struct grid *grid, struct grid_cell cell, struct vec p, double r2,
+                        int found, uint32_t *photon, double *distance2) {
   uint32_t bucket = hash_cell(cell) & grid->mask;
-  double r2 = grid->r * grid->r;
   for (uint32_t at = grid->first[bucket]; at < grid->first[bucket + 1]; at++) {
     struct vec d = vec_sub(grid->position[at], p);
     double d2 = vec_dot(d, d);
@@ -98,10 +97,11 @@ static int find_in_cell(const struct grid *grid, struct grid_cell cell, struct v
   return found;
 }
 
-int grid_find(const struct grid *grid, struct vec p, uint32_t *photon, double *distance2) {
+int grid_find(const struct grid *grid, struct vec p, double r, uint32_t *photon,
+              double *distance2) {
   // A photon within r differs by at most r in each coordinate, rounding included: d2 < r2 implies
   // |dx| <= r (1 + 2 eps), so the corners are taken from a box that is wider than that.
-  double reach = grid->r * (1 + 4 * DBL_EPSILON), k = grid->inverse_edge;
+  double reach = r * (1 + 4 * DBL_EPSILON), k = grid->inverse_edge;
   struct grid_cell lo = cell_of(vec(p.x - reach, p.y - reach, p.z - reach), k);
   struct grid_cell hi = cell_of(vec(p.x + reach, p.y + reach, p.z + reach), k);
   int found = 0;
@@ -110,7 +110,7 @@ int grid_find(const struct grid *grid, struct vec p, uint32_t *photon, double *d
   for (cell.z = lo.z; cell.z <= hi.z; cell.z++)
     for (cell.y = lo.y; cell.y <= hi.y; cell.y++)
       for (cell.x = lo.x; cell.x <= hi.x; cell.x++)
-        found = find_in_cell(grid, cell, p, found, photon, distance2);
+        found = find_in_cell(grid, cell, p, r * r, found, photon, distance2);
   return found;
 }
 

@@ -34,9 +34,9 @@ bool grid_radius_is_resolved(struct box bounds, double r, struct problem *);
 // Sorts the photons; grows in the arena.
 void grid_build(struct grid *, const struct photons *, double r, struct arena *);
 
-// Photons within r of p: their numbers in struct photons and squared distances, in the grid's
-// order. At most `count` of the photons there are.
-int grid_find(const struct grid *, struct vec p, uint32_t *photon, double *distance2);
+// Photons within r of p, r at most the grid's: their numbers in struct photons and squared
+// distances, in the grid's order. At most `count` of the photons there are.
+int grid_find(const struct grid *, struct vec p, double r, uint32_t *photon, double *distance2);
 
 // The cells that the ball of radius r around any of n points meets, as a filter for photons_trace.
 // Conservative: it may keep more, never less, than what a query around these points can find.

@@ -57,7 +57,7 @@ static void check_cloud(const char *name, int n, double half, double r) {
   for (int q = 0; q < 200; q++) {
     struct vec p = photons.position[(q * 37) % n];
     if (q % 2) p = vec_add(p, vec(0.3 * r, -0.7 * r, 0.11 * r));
-    int expected = brute_force(&photons, p, r, in), found = grid_find(&grid, p, photon, distance2);
+    int expected = brute_force(&photons, p, r, in), found = grid_find(&grid, p, r, photon, distance2);
     assert_int_equal(found, expected);
     total += found;
     for (int k = 0; k < found; k++) {
@@ -94,8 +94,8 @@ static void order_does_not_depend_on_photons_elsewhere(void **state) {
   grid_build(&grid_some, &some, r, &arena);
   uint32_t photon[4000];
   double d_all[4000], d_some[4000];
-  int n = grid_find(&grid_all, p, photon, d_all);
-  assert_int_equal(grid_find(&grid_some, p, photon, d_some), n);
+  int n = grid_find(&grid_all, p, r, photon, d_all);
+  assert_int_equal(grid_find(&grid_some, p, r, photon, d_some), n);
   assert_true(n > 1);
   assert_memory_equal(d_all, d_some, (size_t)n * sizeof *d_all);
 }
@@ -110,7 +110,7 @@ static void photons_at_exactly_r_are_outside_and_at_zero_inside(void **state) {
   grid_build(&grid, &photons, 0.5, &arena);
   uint32_t photon[3];
   double distance2[3];
-  assert_int_equal(grid_find(&grid, vec(0, 0, 0), photon, distance2), 2);
+  assert_int_equal(grid_find(&grid, vec(0, 0, 0), 0.5, photon, distance2), 2);
 }
 
 static void no_photons_are_no_problem(void **state) {
@@ -118,7 +118,7 @@ static void no_photons_are_no_problem(void **state) {
   struct photons photons = {.n_channels = 1};
   struct grid grid = {0};
   grid_build(&grid, &photons, 0.1, &arena);
-  assert_int_equal(grid_find(&grid, vec(0, 0, 0), NULL, NULL), 0);
+  assert_int_equal(grid_find(&grid, vec(0, 0, 0), 0.1, NULL, NULL), 0);
 }
 
 static void unresolved_radii_are_refused(void **state) {
@@ -157,9 +157,10 @@ static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
   struct gather gather = {0};
   for (int k = 0; k < n_kernels; k++) {
     // Two discs share the photons; the smaller one must not see those beyond it.
-    struct disc disc[2] = {disc_of(&kernels[k], r, 1000), disc_of(&kernels[k], 0.2, 1000)};
+    double c = kernels[k].constants(2).c;
+    struct disc disc[2] = {disc_of(&kernels[k], c, r, 1000), disc_of(&kernels[k], c, 0.2, 1000)};
     double out[2] = {0}, expected[2] = {0};
-    gather_point(&gather, &photons, &grid, &point, 64, disc, 2, out, 1, &arena);
+    gather_point(&gather, &photons, &grid, &point, 64, disc, 2, NULL, out, 1, &arena);
     for (int64_t j = 0; j < photons.count; j++) {
       struct vec d = vec_sub(photons.position[j], point.p);
       for (int e = 0; e < 2; e++)

@@ -1,0 +1,41 @@
+// What is measured: the points, what determines their paths, and the estimators that share them.
+#ifndef ESTIMATE_MEASUREMENT_H
+#define ESTIMATE_MEASUREMENT_H
+
+#include "bvh/bvh.h"
+#include "density/kernel.h"
+#include "density/law.h"
+#include "scene/scene.h"
+#include "scene/skip.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// One estimator on the shared photons.
+struct estimator {
+  const struct kernel *kernel;
+  const struct law *law;
+  double alpha;
+  double r1; // support at i = 1, scene units
+};
+
+// What determines the paths, and the estimators that share them.
+struct measurement {
+  const struct scene *scene;
+  const struct bvh *bvh;
+  struct features features;
+  const struct pixel *pixel; // [n_points] what is measured: a few probes or a whole image
+  int n_points;
+  int n_replicas;     // path: this many points in a row are samples of one pixel, each with
+                      // random numbers of its own; at least 1
+  bool footprint;     // a new uniform position in the pixel each iteration, else its centre
+  bool nee;           // direct light by next-event estimation instead of photons
+  int depth;          // pbrt's maxdepth
+  uint64_t n_emitted; // photon paths per iteration
+  uint64_t seed;
+  const struct estimator *estimator;
+  int n_estimators;
+  unsigned skip_off; // bits of enum skip: what is not to be skipped
+};
+
+#endif

@@ -1,0 +1,51 @@
+// One iteration of a photon integrator: eye points, a photon pass, and the density estimates at the
+// points. What the radii are and what is remembered between iterations is the integrator's.
+//   photon_map_see -> photon_map_emit -> photon_map_gather at each point -> photon_map_add_seen
+#ifndef ESTIMATE_PHOTON_MAP_H
+#define ESTIMATE_PHOTON_MAP_H
+
+#include "density/gather.h"
+#include "estimate/measurement.h"
+
+enum { PHOTON_MAP_FEW = 16 }; // points; then photons elsewhere are not worth sorting
+
+struct photon_map {
+  const struct measurement *measure;
+  struct arena *arena;
+  struct walk *walk;
+  uint64_t run;
+  struct eye_point *point; // [measure->n_points]
+  struct photons photons;
+  double *c; // [n_estimators] psi(0) of the kernel
+  struct grid grid;
+  struct gather gather;
+  struct disc *disc; // [n_estimators] scratch
+  struct grid_seen seen;
+  struct vec seen_point[PHOTON_MAP_FEW];
+  double *direct; // [n_points * n_channels], next-event estimation only
+};
+
+struct photon_map *photon_map_new(const struct measurement *, struct arena *);
+
+// The eye pass of iteration i; i = 0: one before all iterations.
+void photon_map_see(struct photon_map *, uint64_t i);
+
+// The photon pass of iteration i, made ready for radii up to r.
+void photon_map_emit(struct photon_map *, uint64_t i, double r);
+
+// Adds the estimates at a point with radius r[e] of estimator e to
+// frame[(e * n_points + point) * n_channels + c], and counts the photons in each disc (count: NULL
+// or [n_estimators]).
+void photon_map_gather(struct photon_map *, int point, const double *r, int64_t *count,
+                       double *frame);
+
+// Adds what needs no photons: emission seen by the points, and their direct light where it is left
+// to next-event estimation (random in iteration i).
+void photon_map_add_seen(struct photon_map *, uint64_t i, double *frame);
+
+// Length of a frame.
+static inline long photon_map_frame(const struct measurement *measure) {
+  return (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
+}
+
+#endif
