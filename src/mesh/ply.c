@@ -1,4 +1,5 @@
 #include "mesh/ply.h"
+#include "base/gzip.h"
 
 #include <math.h>
 
@@ -198,9 +199,7 @@ static bool check_header(const struct ply *ply, const struct ply_element *vertex
 bool mesh_read_ply(const char *file, struct text bytes, struct arena *arena, struct arena scratch,
                    struct mesh *mesh, struct problem *problem) {
   *mesh = (struct mesh){0};
-  if (bytes.length >= 2 && bytes.data[0] == '\x1f' && bytes.data[1] == '\x8b' &&
-      !mesh_gunzip(file, bytes, &scratch, &bytes, problem))
-    return false;
+  if (gzip_is(bytes) && !gzip_expand(file, bytes, &scratch, &bytes, problem)) return false;
   struct ply ply = {.file = file, .begin = bytes.data, .at = bytes.data, .problem = problem};
   ply.end = bytes.data + bytes.length;
   if (!ply_read_header(&ply, &scratch)) return false;

@@ -76,8 +76,4 @@ bool ply_read_count(struct ply *, const struct ply_property *, int64_t *count);
 // All values of a property in one row.
 bool ply_skip_property(struct ply *, const struct ply_property *);
 
-// gzip; false: damaged. The output ends with a zero that is not counted.
-bool mesh_gunzip(const char *file, struct text in, struct arena *, struct text *out,
-                 struct problem *);
-
 #endif

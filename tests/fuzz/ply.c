@@ -1,8 +1,4 @@
-// Any bytes are a mesh or a problem of one line. With clang, from the root of the tree:
-//   clang -g -O1 -std=c11 -Isrc -fsanitize=fuzzer,address,undefined tests/fuzz/ply.c
-//   src/mesh/ply*.c
-//     src/mesh/gzip.c src/base/arena.c src/base/problem.c src/pbrt/number.c -lz -lm -o fuzz-ply
-//   ./fuzz-ply -max_len=4096 NEW tests/fuzz/corpus/ply
+// Any bytes are a mesh or a problem of one line.
 #include "mesh/mesh.h"
 
 #include <math.h>

@@ -293,8 +293,8 @@ static void malformed_files_are_refused_in_one_line(void **state) {
        "m.ply: byte 178: 4000000000 rows of element vertex do not fit"},
       {BINARY_HEAD "element junk 999999999999999999\nproperty list uchar int a\n" THREE FACE "0",
        "999999999999999999 rows of element junk do not fit"},
-      {"\x1f\x8b\x08", "m.ply: the gzip data is cut off"},
-      {"\x1f\x8b\x08zzzzzzzzzzzzzzzzzzz", "m.ply: the gzip data is damaged"},
+      {"\x1f\x8b\x08", "m.ply: the gzip file is cut off"},
+      {"\x1f\x8b\x08zzzzzzzzzzzzzzzzzzz", "m.ply: a damaged gzip file"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     struct mesh mesh;
