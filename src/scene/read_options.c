@@ -148,11 +148,21 @@ bool read_color_space(struct reader *reader, struct call *call) {
   return wrong_type(reader, call, "use \"srgb\"");
 }
 
+// Without jitter pbrt sees the pixel's centre through the lens's, when the shutter is half through.
+static void fix_eye(struct scene *scene) {
+  struct camera *camera = &scene->camera;
+  scene->settings.centre = true;
+  camera->lens_radius = 0;
+  camera->shutter_open = camera->shutter_close =
+      camera->shutter_open + (camera->shutter_close - camera->shutter_open) / 2;
+}
+
 bool read_finish_options(struct reader *reader) {
   struct scene *scene = reader->builder.scene;
   if (scene->settings.seed < 0) scene->settings.seed = reader->sampler_seed;
   if (scene->settings.seed < 0) scene->settings.seed = reader->option_seed;
-  if (reader->no_pixel_jitter) scene->settings.centre = true;
   memcpy(scene->motion_time, reader->transform_times, sizeof scene->motion_time);
-  return read_finish_film(reader);
+  if (!read_finish_film(reader)) return false;
+  if (reader->no_pixel_jitter) fix_eye(scene);
+  return true;
 }

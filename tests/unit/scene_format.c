@@ -230,6 +230,11 @@ static void options_that_change_the_image_are_honoured(void **state) {
   struct scene scene =
       scene_of("Option \"disablepixeljitter\" true Option \"seed\" 17\n" W TRIANGLE);
   assert_true(scene.settings.centre && scene.settings.seed == 17);
+  scene =
+      scene_of("Option \"disablepixeljitter\" true Camera \"perspective\" \"float lensradius\" .5 "
+               "\"float shutterclose\" .25\n" W TRIANGLE);
+  assert_true(scene.camera.lens_radius == 0 && scene.camera.shutter_open == 0.125);
+  assert_true(scene.camera.shutter_close == 0.125 && scene.settings.exposure == 0.25);
   scene = scene_of("Option \"seed\" 17 Sampler \"halton\" \"integer seed\" 4\n" W TRIANGLE);
   assert_true(scene.settings.seed == 4);
 }
