@@ -1,10 +1,5 @@
 // Fuzzes the image readers: the first byte chooses the extension and the encoding, the rest is the
-// file. Whatever it is, it is decoded or refused in one line. With clang, from the root of the
-// tree:
-//   clang -g -O1 -std=c11 -ffp-contract=off -fno-builtin -Isrc
-//     -fsanitize=fuzzer,address,undefined tests/fuzz/image.c src/image/*.c src/base/*.c
-//     src/numeric/exponential.c -lOpenEXRCore -lpng -ljpeg -lz -lm -o fuzz-image
-//   ./fuzz-image -max_len=4096 NEW tests/fuzz/corpus/image
+// file. Whatever it is, it is decoded or refused in one line.
 #include "image/raster.h"
 
 #include <stdint.h>

@@ -18,7 +18,7 @@ static struct arena arena;
 static char folder[] = P_tmpdir "/photonlab-exr-XXXXXX";
 static const char *path;
 
-enum { WIDTH = 3, HEIGHT = 21 };
+enum { WIDTH = 3, HEIGHT = 21, TILE_WIDTH = 2, TILE_HEIGHT = 8 };
 
 struct kind {
   exr_storage_t storage;
@@ -26,9 +26,10 @@ struct kind {
   exr_compression_t compression;
   int parts, sampling;
   int top, bottom; // rows of the data window; the display window is 0 to HEIGHT - 1
+  bool levels;     // tiles of all resolutions
 };
 static const struct kind plain = {
-    EXR_STORAGE_SCANLINE, EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS, 1, 1, 0, HEIGHT - 1};
+    EXR_STORAGE_SCANLINE, EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS, 1, 1, 0, HEIGHT - 1, false};
 
 #define OK(call) assert_int_equal(call, EXR_ERR_SUCCESS)
 
@@ -41,7 +42,9 @@ static void add_part(exr_context_t file, struct kind kind, const char *name) {
   OK(exr_initialize_required_attr(file, part, &display, &data, 1, &centre, 1,
                                   EXR_LINEORDER_INCREASING_Y, kind.compression));
   if (kind.storage == EXR_STORAGE_TILED)
-    OK(exr_set_tile_descriptor(file, part, 8, 8, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
+    OK(exr_set_tile_descriptor(file, part, TILE_WIDTH, TILE_HEIGHT,
+                               kind.levels ? EXR_TILE_MIPMAP_LEVELS : EXR_TILE_ONE_LEVEL,
+                               EXR_TILE_ROUND_DOWN));
   OK(exr_add_channel(file, part, "Y", kind.type, EXR_PERCEPTUALLY_LOGARITHMIC, kind.sampling,
                      kind.sampling));
 }
@@ -65,6 +68,33 @@ static void add_pixels(exr_context_t file, struct kind kind, const void *pixels)
   }
 }
 
+static void add_tile(exr_context_t file, int x, int y, int level, const float *pixels) {
+  exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+  exr_chunk_info_t info;
+  OK(exr_write_tile_chunk_info(file, 0, x, y, level, level, &info));
+  OK(exr_encoding_initialize(file, 0, &info, &pipe));
+  pipe.channels[0].encode_from_ptr = (const uint8_t *)pixels;
+  pipe.channels[0].user_pixel_stride = 4;
+  pipe.channels[0].user_line_stride = 4 * WIDTH;
+  OK(exr_encoding_choose_default_routines(file, 0, &pipe));
+  OK(exr_encoding_run(file, 0, &pipe));
+  OK(exr_encoding_destroy(file, &pipe));
+}
+
+// Coarser levels are black, so that reading one would show.
+static void add_tiles(exr_context_t file, struct kind kind, const float *pixels) {
+  static const float black[WIDTH * HEIGHT];
+  int width = WIDTH, height = HEIGHT;
+  for (int level = 0; level == 0 || (kind.levels && level < 5); level++) {
+    for (int y = 0; y < height; y += TILE_HEIGHT)
+      for (int x = 0; x < width; x += TILE_WIDTH)
+        add_tile(file, x / TILE_WIDTH, y / TILE_HEIGHT, level,
+                 level ? black : pixels + y * WIDTH + x);
+    width = width > 1 ? width / 2 : 1;
+    height = height > 1 ? height / 2 : 1;
+  }
+}
+
 // On a stream of ours, which the library does not delete when pixels are missing.
 static int64_t stream_write(exr_const_context_t file, void *stream, const void *bytes, uint64_t n,
                             uint64_t offset, exr_stream_error_func_ptr_t error) {
@@ -83,7 +113,10 @@ static void write_kind(struct kind kind, const void *pixels) {
   for (int p = 0; p < kind.parts; p++)
     add_part(file, kind, kind.parts == 1 ? NULL : arena_format(&arena, "part %d", p));
   OK(exr_write_header(file));
-  if (pixels) add_pixels(file, kind, pixels);
+  if (pixels && kind.storage == EXR_STORAGE_TILED)
+    add_tiles(file, kind, pixels);
+  else if (pixels)
+    add_pixels(file, kind, pixels);
   exr_finish(&file);
   fclose(setup.user_data);
 }
@@ -130,23 +163,57 @@ static void half_and_uint_channels_become_floats(void **state) {
   assert_reads(kind, number, expected);
 }
 
+static void tiles_of_the_finest_level_are_read(void **state) {
+  (void)state;
+  struct kind kind = plain;
+  kind.storage = EXR_STORAGE_TILED;
+  for (int levels = 0; levels < 2; levels++) {
+    kind.levels = levels;
+    assert_reads(kind, value, value);
+    kind.compression = EXR_COMPRESSION_NONE;
+    assert_reads(kind, value, value);
+  }
+}
+
+// PXR24 keeps 24 bits of a float and all of a half; B44 all of floats and of equal blocks of
+// halves.
+static void what_lossy_compressions_leave_is_read(void **state) {
+  (void)state;
+  static float coarse[WIDTH * HEIGHT], two_and_a_bit[WIDTH * HEIGHT];
+  static uint16_t half[WIDTH * HEIGHT];
+  for (int j = 0; j < WIDTH * HEIGHT; j++) {
+    coarse[j] = 0.25f + (float)j;
+    two_and_a_bit[j] = 2.384765625f;
+    half[j] = 0x40c5;
+  }
+  struct kind kind = plain;
+  kind.compression = EXR_COMPRESSION_PXR24;
+  assert_reads(kind, coarse, coarse);
+  kind.compression = EXR_COMPRESSION_B44;
+  assert_reads(kind, value, value);
+  kind.type = EXR_PIXEL_HALF;
+  assert_reads(kind, half, two_and_a_bit);
+  kind.compression = EXR_COMPRESSION_B44A;
+  assert_reads(kind, half, two_and_a_bit);
+}
+
 static void what_we_do_not_read_is_refused_with_its_reason(void **state) {
   (void)state;
-  struct kind tiled = plain, parts = plain, cropped = plain, sampled = plain, lossy = plain;
-  tiled.storage = EXR_STORAGE_TILED;
+  struct kind deep = plain, parts = plain, cropped = plain, sampled = plain, lossy = plain;
+  deep.storage = EXR_STORAGE_DEEP_SCANLINE;
   parts.parts = 2;
   cropped.top = 3;
   sampled.sampling = 3;
   sampled.bottom = 20;
-  lossy.compression = EXR_COMPRESSION_B44;
+  lossy.compression = EXR_COMPRESSION_DWAA;
   const struct {
     struct kind kind;
     const char *says;
-  } row[] = {{tiled, "is tiled or deep"},
+  } row[] = {{deep, "is deep"},
              {parts, "has several parts"},
              {cropped, "is cropped"},
              {sampled, "has subsampled channels"},
-             {lossy, "its compression loses bits"},
+             {lossy, "is compressed with DWA"},
              {plain, "damaged exr file"}}; // a header without pixels
   for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
     struct problem problem = {0};
@@ -190,6 +257,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_lossless_compression_is_read),
       cmocka_unit_test(half_and_uint_channels_become_floats),
+      cmocka_unit_test(tiles_of_the_finest_level_are_read),
+      cmocka_unit_test(what_lossy_compressions_leave_is_read),
       cmocka_unit_test(what_we_do_not_read_is_refused_with_its_reason),
       cmocka_unit_test(a_small_file_cannot_claim_a_large_image),
   };
