@@ -147,6 +147,20 @@ static void what_is_left_out_leniently_is_said(void **state) {
   assert_string_equal(said, wanted);
 }
 
+// Radiance 1 from a triangle of area 1/2 and a square of area 1.
+static void all_of_a_mixed_mesh_emits(void **state) {
+  (void)state;
+  put("b.pbrt", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 -1 0\n4 0 1 2 3\n3 0 4 1\n");
+  put("main.pbrt", "WorldBegin AreaLightSource \"diffuse\"\n"
+                   "Shape \"plymesh\" \"string filename\" \"b.pbrt\"");
+  struct scene scene = read_scene("main.pbrt");
+  double power = 0;
+  for (uint32_t k = 0; k < scene.n_lights; k++) power += scene.light[k].power[0];
+  assert_true(fabs(power - acos(-1.0) * 1.5) <= 1e-12);
+}
+
 static void files_outside_of_the_folder_can_be_refused(void **state) {
   (void)state;
   static const char *const names[] = {"/etc/hostname", "../b.pbrt", "part/../b.pbrt", "//b.pbrt"};
@@ -191,6 +205,7 @@ int main(void) {
       cmocka_unit_test(the_hash_is_of_all_files_in_order),
       cmocka_unit_test(compressed_files_are_read),
       cmocka_unit_test(what_is_left_out_leniently_is_said),
+      cmocka_unit_test(all_of_a_mixed_mesh_emits),
       cmocka_unit_test(files_outside_of_the_folder_can_be_refused),
   };
   return cmocka_run_group_tests_name("scene_files", tests, make_folder, remove_folder);
