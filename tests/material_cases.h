@@ -51,19 +51,28 @@ static const struct material_case material_cases[] = {
 enum { N_MATERIAL_CASES = (int)(sizeof material_cases / sizeof *material_cases) };
 
 // A sphere of that material ('name' for "name").
-static inline struct scene material_scene(int i) {
-  char text[1024];
+static inline struct scene material_scene_of(const char *material) {
+  char text[2048];
   int n = snprintf(text, sizeof text,
                    "WorldBegin LightSource 'point' "
                    "MakeNamedMaterial 'paper' 'string type' 'diffusetransmission' "
                    "MakeNamedMaterial 'mirror' 'string type' 'conductor' 'rgb reflectance' [1 1 1] "
                    "MakeNamedMaterial 'frosted' 'string type' 'dielectric' 'float roughness' .2 "
+                   "Texture 'fine' 'float' 'constant' 'float value' .05 "
+                   "Texture 'coarse' 'float' 'constant' 'float value' .6 "
+                   "Texture 'none' 'float' 'constant' 'float value' 0 "
+                   "Texture 'red' 'spectrum' 'constant' 'rgb value' [.7 .2 .1] "
+                   "Texture 'bright' 'spectrum' 'scale' 'texture tex' 'red' 'float scale' 5 "
                    "Material %s Shape 'sphere'",
-                   material_cases[i].text);
+                   material);
   assert_true(n > 0 && n < (int)sizeof text);
   for (char *c = text; *c; c++)
     if (*c == '\'') *c = '"';
   return scene_of(text);
+}
+
+static inline struct scene material_scene(int i) {
+  return material_scene_of(material_cases[i].text);
 }
 
 static inline const struct material *material_of(const struct scene *scene) {

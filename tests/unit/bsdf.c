@@ -171,6 +171,53 @@ static void values_are_finite_and_not_negative(void **state) {
   }
 }
 
+// To the bit. pbrt-v4 keeps textured reflectances below 1 (conductors: 0.9999).
+static void textures_give_what_constants_give(void **state) {
+  (void)state;
+  static const char *const pairs[][2] = {
+      {"'diffuse' 'texture reflectance' 'red'", "'diffuse' 'rgb reflectance' [.7 .2 .1]"},
+      {"'diffuse' 'texture reflectance' 'bright'", "'diffuse' 'rgb reflectance' [1 1 .5]"},
+      {"'diffusetransmission' 'texture reflectance' 'red' 'texture transmittance' 'bright'",
+       "'diffusetransmission' 'rgb reflectance' [.7 .2 .1] 'rgb transmittance' [1 1 .5]"},
+      {"'diffusetransmission' 'texture reflectance' 'bright' 'float scale' .5",
+       "'diffusetransmission' 'rgb reflectance' [1 .5 .25] 'rgb transmittance' [.125 .125 .125]"},
+      {"'conductor' 'texture reflectance' 'bright' 'texture roughness' 'fine'",
+       "'conductor' 'rgb reflectance' [.9999 .9999 .5] 'float roughness' .05"},
+      {"'conductor' 'texture eta' 'red' 'texture uroughness' 'fine' 'texture vroughness' 'coarse'",
+       "'conductor' 'rgb eta' [.7 .2 .1] 'spectrum k' 'metal-Cu-k' 'float uroughness' .05 "
+       "'float vroughness' .6"},
+      {"'conductor' 'texture roughness' 'none'",
+       "'conductor' 'spectrum eta' 'metal-Cu-eta' 'bool remaproughness' false"},
+      {"'dielectric' 'texture roughness' 'coarse' 'texture vroughness' 'fine'",
+       "'dielectric' 'float uroughness' .6 'float vroughness' .05"},
+      {"'dielectric' 'texture roughness' 'none'", "'dielectric' 'float eta' 1.5"},
+  };
+  struct draw draw = draw_named("textures_give_what_constants_give");
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    struct scene scene = material_scene_of(pairs[i][0]);
+    unsigned needs = material_of(&scene)->needs;
+    struct bsdf textured = material_bsdf(&scene, 0.385);
+    scene = material_scene_of(pairs[i][1]);
+    struct bsdf constant = material_bsdf(&scene, 0.385);
+    assert_true(needs & MATERIAL_DETAIL);
+    for (int k = 0; k < 100; k++) {
+      struct vec wo = draw_direction(&draw), wi = draw_direction(&draw);
+      struct bsdf_sample s[2];
+      double f[2][3], u[3];
+      draw_three(&draw, u);
+      bsdf_value(&textured, wo, wi, TRANSPORT_RADIANCE, f[0]);
+      bsdf_value(&constant, wo, wi, TRANSPORT_RADIANCE, f[1]);
+      assert_memory_equal(f[0], f[1], sizeof f[0]);
+      bool sampled = bsdf_sample(&textured, wo, u, TRANSPORT_RADIANCE, &s[0]);
+      assert_int_equal(sampled, bsdf_sample(&constant, wo, u, TRANSPORT_RADIANCE, &s[1]));
+      if (sampled) assert_memory_equal(&s[0], &s[1], sizeof s[0]);
+      double delta = bsdf_delta_probability(&textured, wo, TRANSPORT_RADIANCE);
+      assert_true(delta == bsdf_delta_probability(&constant, wo, TRANSPORT_RADIANCE));
+      assert_true(delta == 0 || needs & MATERIAL_DELTA);
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_registered_material_is_a_case),
@@ -179,6 +226,7 @@ int main(void) {
       cmocka_unit_test(value_is_adjoint),
       cmocka_unit_test(delta_lobes_are_adjoint),
       cmocka_unit_test(values_are_finite_and_not_negative),
+      cmocka_unit_test(textures_give_what_constants_give),
   };
   return cmocka_run_group_tests_name("bsdf", tests, NULL, NULL);
 }

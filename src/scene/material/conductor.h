@@ -12,10 +12,19 @@ struct conductor {
 };
 
 // pbrt-v4's indices for a reflectance r at normal incidence: eta = 1, k = 2 sqrt(r) / sqrt(1 - r),
-// r at most 0.9999.
+// r in [0, 0.9999].
 static inline double conductor_k_of_reflectance(double r) {
-  r = r < 0.9999 ? r : 0.9999;
+  r = r > 0 ? (r < 0.9999 ? r : 0.9999) : 0;
   return 2 * sqrt(r) / sqrt(1 - r);
+}
+
+// Channels that are equal are computed once.
+static inline void conductor_fresnel(const struct conductor *m, double cosine, double scale,
+                                     double rgb[3]) {
+  for (int c = 0; c < 3; c++) {
+    bool again = c > 0 && m->eta[c] == m->eta[c - 1] && m->k[c] == m->k[c - 1];
+    rgb[c] = again ? rgb[c - 1] : scale * fresnel_conductor(cosine, m->eta[c], m->k[c]);
+  }
 }
 
 // The facet that reflects wo to wi: its density and cosine. False: none does.
@@ -34,7 +43,7 @@ static inline void conductor_value(const struct conductor *m, struct vec wo, str
   f[0] = f[1] = f[2] = 0;
   if (!conductor_facet(m, wo, wi, &d, &cosine)) return;
   double scale = d * microfacet_g_over_cosines(&m->facets, wo, wi) / 4;
-  for (int c = 0; c < 3; c++) f[c] = scale * fresnel_conductor(cosine, m->eta[c], m->k[c]);
+  conductor_fresnel(m, cosine, scale, f);
 }
 
 static inline double conductor_pdf_of(const struct conductor *m, struct vec wo, double d) {
@@ -65,7 +74,7 @@ static inline bool conductor_sample(const struct conductor *m, struct vec wo, co
     scale = zi * (so + zo) / (so * zi + si * zo); // G / G1
     *pdf = conductor_pdf_of(m, wo, microfacet_d(&m->facets, wm));
   }
-  for (int c = 0; c < 3; c++) weight[c] = scale * fresnel_conductor(cosine, m->eta[c], m->k[c]);
+  conductor_fresnel(m, cosine, scale, weight);
   return true;
 }
 

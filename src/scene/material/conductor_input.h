@@ -63,6 +63,10 @@ static inline struct conductor conductor_at(const struct conductor_input *input,
   if (!input->reflects) {
     input_rgb(&input->eta, surface, m.eta);
     input_rgb(&input->k, surface, m.k);
+    for (int c = 0; c < 3; c++) { // textures may go below
+      m.eta[c] = m.eta[c] > 0 ? m.eta[c] : 0;
+      m.k[c] = m.k[c] > 0 ? m.k[c] : 0;
+    }
     return m;
   }
   double rgb[3];

@@ -1,6 +1,7 @@
 // Material "diffuse": Lambert, f = reflectance / pi on the side of the shading normal where wo is;
 // both sides reflect. `reflectance` [0.5 0.5 0.5].
 #include "numeric/elementary.h"
+#include "scene/material/albedo.h"
 #include "scene/read.h"
 
 static const double one_over_pi = 0x1.45f306dc9c883p-2;
@@ -50,7 +51,7 @@ static void bsdf(const struct scene *scene, const struct material *material,
                  const struct surface *surface, struct bsdf *out) {
   (void)scene;
   const struct diffuse *diffuse = material->data;
-  input_rgb(&diffuse->reflectance, surface, out->x);
+  albedo_at(&diffuse->reflectance, surface, 1, out->x);
   if (out->x[0] != 0 || out->x[1] != 0 || out->x[2] != 0) out->type = &lambert;
 }
 

@@ -1,7 +1,8 @@
 // Material "diffusetransmission": Lambertian reflection and transmission, both sides: paper,
 // leaves. `reflectance`, `transmittance` [0.25 0.25 0.25], each times `float scale` [1]. As in
-// pbrt-v4 the two may sum to more than 1, and what a texture makes exceed 1 is 1.
+// pbrt-v4 the two may sum to more than 1.
 #include "numeric/elementary.h"
+#include "scene/material/albedo.h"
 #include "scene/read.h"
 
 static const double one_over_pi = 0x1.45f306dc9c883p-2;
@@ -78,11 +79,8 @@ static void bsdf(const struct scene *scene, const struct material *material,
   double largest[2] = {0, 0};
   for (int k = 0; k < 2; k++) {
     double *rgb = out->x + (k == 0 ? REFLECTED : TRANSMITTED);
-    input_rgb(&sheet->side[k], surface, rgb);
-    for (int c = 0; c < 3; c++) {
-      rgb[c] = rgb[c] * sheet->scale < 1 ? rgb[c] * sheet->scale : 1;
-      largest[k] = largest[k] < rgb[c] ? rgb[c] : largest[k];
-    }
+    albedo_at(&sheet->side[k], surface, sheet->scale, rgb);
+    for (int c = 0; c < 3; c++) largest[k] = largest[k] < rgb[c] ? rgb[c] : largest[k];
   }
   if (!(largest[0] + largest[1] > 0)) return;
   out->x[CHOICE] = largest[0] / (largest[0] + largest[1]);

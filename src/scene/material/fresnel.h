@@ -62,7 +62,8 @@ static inline double fresnel_conductor(double cosine, double eta, double k) {
   double even = square + cos2, odd = 2 * a * cosine;
   double perpendicular = (even - odd) / (even + odd);
   double even_p = cos2 * square + sin2 * sin2, odd_p = odd * sin2;
-  double ratio = (even_p - odd_p) / (even_p + odd_p);
+  double sum_p = even_p + odd_p; // 0 for eta = k = 0 seen straight on
+  double ratio = sum_p > 0 ? (even_p - odd_p) / sum_p : 1;
   return perpendicular * (1 + ratio) / 2;
 }
 
