@@ -128,9 +128,9 @@ struct reader {
   } lights;
   struct place world_begin;                                            // line 0: not yet
   struct place camera, film, sampler, integrator, filter, color_space; // line 0: not given
-  const double *screen_window; // Camera's, or NULL
-  double iso;                  // Film's
-  double frame_aspect_ratio;   // 0: not given
+  const double *screen_window;                                         // Camera's, or NULL
+  double iso;                                                          // Film's
+  double frame_aspect_ratio;                                           // 0: not given
   double transform_times[N_ENDS];
   int64_t sampler_seed, option_seed; // -1: not given
   bool no_pixel_jitter;              // Option
@@ -227,6 +227,9 @@ void read_default_material(struct reader *);
 
 // The directives of a file up to its end.
 bool read_directives(struct reader *, struct arena scratch);
+
+// From the directive's name to the token behind what belongs to it.
+bool read_parse_call(struct reader *, const struct directive *, struct arena *, struct call *);
 
 // Pushes and pops attributes; `begin` and `end` are the directives that do so.
 void read_push_attributes(struct reader *, const struct call *);
