@@ -107,6 +107,7 @@ struct walk {
   struct vec w;                 // where the walk goes
   double z;                     // above the base
   double beta[3];
+  int depth;
   double *f; // the sum over walks
 };
 
@@ -126,13 +127,13 @@ static void multiply(double beta[3], const double weight[3]) {
 
 // Through the coat to wi by the direction that was sampled from there; pdf: with which the base
 // or the medium would have sampled it.
-static void connect_sampled(struct walk *walk, const double f[3], double pdf, double depth) {
+static void connect_sampled(struct walk *walk, const double f[3], double pdf, double distance) {
   double weight = walk->layered->coat.facets.smooth ? 1 : heuristic(walk->exit_pdf, pdf);
-  add(walk, weight * walk->exit_weight * coat_attenuation(depth, walk->exit.z), f);
+  add(walk, weight * walk->exit_weight * coat_attenuation(distance, walk->exit.z), f);
 }
 
 // By the direction w that the base or the medium sampled with density pdf (0: a delta).
-static void connect_direct(struct walk *walk, double pdf, double depth) {
+static void connect_direct(struct walk *walk, double pdf, double distance) {
   static const double one[3] = {1, 1, 1};
   if (walk->layered->coat.facets.smooth) return;
   double exit_pdf;
@@ -140,12 +141,35 @@ static void connect_direct(struct walk *walk, double pdf, double depth) {
       coat_transmission(&walk->layered->coat, walk->wi, layered_opposite(walk->w), &exit_pdf);
   if (!(f > 0)) return;
   double weight = pdf > 0 ? heuristic(pdf, exit_pdf) : 1;
-  add(walk, weight * f * coat_attenuation(depth, walk->w.z), one);
+  add(walk, weight * f * coat_attenuation(distance, walk->w.z), one);
 }
 
-static bool survives_roulette(struct walk *walk, int depth) {
+// Between smooth interfaces the medium's light leaves along `exit` either directly or by way of the
+// metal, and after any number of turns between metal and coat: none of it could be sampled
+// otherwise. (pbrt-v4's f has the direct one only, its sampling has all.)
+static void connect_smooth(struct walk *walk, struct vec back) {
+  const struct layered *l = walk->layered;
+  struct vec up = layered_opposite(walk->exit), down = vec(up.x, up.y, -up.z);
+  double turn = coat_attenuation(2 * l->thickness, up.z);
+  double direct = phase(l->g, vec_dot(back, up)) * coat_attenuation(l->thickness - walk->z, up.z);
+  double by_metal =
+      phase(l->g, vec_dot(back, down)) * coat_attenuation(l->thickness + walk->z, up.z);
+  double fresnel = fresnel_dielectric(walk->exit.z, l->coat.eta), sum[3];
+  for (int c = 0; c < 3; c++) {
+    double metal = fresnel_conductor(up.z, l->conductor.eta[c], l->conductor.k[c]), power = 1;
+    sum[c] = 0;
+    for (int depth = walk->depth + 1; depth < l->max_depth; depth += 2) {
+      sum[c] += power * direct;
+      if (depth + 1 < l->max_depth) sum[c] += power * by_metal * metal;
+      power *= fresnel * metal * turn;
+    }
+  }
+  add(walk, walk->exit_weight / up.z, sum);
+}
+
+static bool survives_roulette(struct walk *walk) {
   double largest = layered_max3(walk->beta);
-  if (depth <= 3 || largest >= 0.25) return true;
+  if (walk->depth <= 3 || largest >= 0.25) return true;
   if (!(draw(&walk->draws) < largest)) return false;
   for (int c = 0; c < 3; c++) walk->beta[c] /= largest;
   return true;
@@ -171,11 +195,14 @@ static bool scatter_in_medium(struct walk *walk) {
   const struct layered *l = walk->layered;
   struct vec back = layered_opposite(walk->w);
   double u[2], p = phase(l->g, vec_dot(back, layered_opposite(walk->exit)));
-  double p3[3] = {p, p, p}, above = l->thickness - walk->z;
-  multiply(walk->beta, l->albedo);
+  double above = l->thickness - walk->z;
   // The phase function knows no cosine; exit_weight has one.
-  for (int c = 0; c < 3; c++) p3[c] /= fabs(walk->exit.z);
-  connect_sampled(walk, p3, p, above);
+  double per_cosine = p / fabs(walk->exit.z), f[3] = {per_cosine, per_cosine, per_cosine};
+  multiply(walk->beta, l->albedo);
+  if (layered_is_smooth(l))
+    connect_smooth(walk, back);
+  else
+    connect_sampled(walk, f, p, above);
   draw_two(&walk->draws, u);
   walk->w = phase_sample(l->g, back, u);
   if (walk->w.z > 0) connect_direct(walk, phase(l->g, vec_dot(back, walk->w)), above);
@@ -224,8 +251,8 @@ static bool enter(struct walk *walk, struct vec wo) {
 
 static void walk_once(struct walk *walk, struct vec wo) {
   if (!enter(walk, wo)) return;
-  for (int depth = 0; depth < walk->layered->max_depth; depth++) {
-    if (!survives_roulette(walk, depth)) return;
+  for (walk->depth = 0; walk->depth < walk->layered->max_depth; walk->depth++) {
+    if (!survives_roulette(walk)) return;
     enum event event = advance(walk);
     bool goes_on = event == AT_BASE   ? scatter_at_base(walk)
                    : event == AT_COAT ? reflect_at_coat(walk)
