@@ -27,6 +27,17 @@ static inline bool conductor_is_textured(const struct params *params, const char
   return false;
 }
 
+// Fourth powers must be finite.
+static inline void conductor_check_index(struct params *params, const char *name,
+                                         const struct input *input) {
+  for (int c = 0; c < 3; c++)
+    if (!(input->value[c] <= 1e6)) {
+      params_complain(params, name, "\"%s\" must not exceed 1e6, and has %g", name,
+                      input->value[c]);
+      return;
+    }
+}
+
 static inline void conductor_read_indices(struct scene_builder *builder, struct params *params,
                                           const char *eta, const char *k,
                                           struct conductor_input *input) {
@@ -38,6 +49,8 @@ static inline void conductor_read_indices(struct scene_builder *builder, struct 
   } else {
     spectrum_read_metal(builder, params, eta, k, input->eta.value, input->k.value);
   }
+  conductor_check_index(params, eta, &input->eta);
+  conductor_check_index(params, k, &input->k);
 }
 
 static inline struct conductor_input conductor_read(struct scene_builder *builder,

@@ -18,7 +18,8 @@ static inline double dielectric_read_eta(struct scene_builder *builder, struct p
     eta = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
   else if (!is_rgb && !spectrum_read_index(builder, params, name, &eta))
     eta = params_float(params, name, eta);
-  if (!(eta > 0)) params_complain(params, name, "\"%s\" must be above 0, and is %g", name, eta);
+  if (!(eta >= 1e-3 && eta <= 1e3)) // no matter has such, and its powers must be finite
+    params_complain(params, name, "\"%s\" must be in [0.001, 1000], and is %g", name, eta);
   return eta;
 }
 

@@ -14,8 +14,8 @@ struct roughness {
 static inline struct input roughness_read_one(struct scene_builder *builder, struct params *params,
                                               const char *name) {
   struct input input = input_read_float(builder, params, name, 0);
-  if (!input.texture && !(input.value[0] >= 0))
-    params_complain(params, name, "\"%s\" must not be negative, and is %g", name, input.value[0]);
+  if (!(input.value[0] >= 0 && input.value[0] <= 1e6)) // squares must be finite
+    params_complain(params, name, "\"%s\" must be in [0, 1e6], and is %g", name, input.value[0]);
   return input;
 }
 
