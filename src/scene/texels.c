@@ -30,6 +30,29 @@ void texels_rgb(const struct texels *texels, int x, int y, double rgb[3]) {
   }
 }
 
+// The texel left of a continuous coordinate, where its centre is 0, and the weight of the next.
+static int texel_left_of(double x, int n, double *weight) {
+  if (!(x > 0)) x = 0;
+  if (x > n - 1) x = n - 1;
+  int left = (int)x < n - 1 ? (int)x : n - 2;
+  if (left < 0) left = 0;
+  *weight = x - left;
+  return left;
+}
+
+void texels_between(const struct texels *texels, double u, double v, double rgb[3]) {
+  double s, t;
+  int x = texel_left_of(u * texels->width - 0.5, texels->width, &s);
+  int y = texel_left_of(v * texels->height - 0.5, texels->height, &t);
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (int k = 0; k < 4; k++) {
+    double value[3], weight = (k % 2 ? s : 1 - s) * (k / 2 ? t : 1 - t);
+    if (!(weight > 0)) continue;
+    texels_rgb(texels, x + k % 2, y + k / 2, value);
+    for (int c = 0; c < 3; c++) rgb[c] += weight * value[c];
+  }
+}
+
 bool texels_are_gray(const struct texels *texels) {
   if (texels->raster.n_channels == 1) return true;
   for (int y = 0; y < texels->height; y++)

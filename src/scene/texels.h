@@ -23,6 +23,8 @@ struct texel {
 bool texels_read(struct scene_builder *, struct params *, struct texels *);
 
 void texels_rgb(const struct texels *, int x, int y, double rgb[3]);
+// Bilinear between the centres of texels, constant beyond the outermost.
+void texels_between(const struct texels *, double u, double v, double rgb[3]);
 bool texels_are_gray(const struct texels *);
 
 // The texel of a point of the image; the last ones where u or v is 1.

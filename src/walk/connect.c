@@ -19,7 +19,7 @@ static bool sample_light(const struct walk *walk, const struct connection *from,
   if (!light->type->sample(scene, light, from->p, u, sample)) return false;
   double f[3], cosine = fabs(vec_dot(sample->wi, from->bsdf->n));
   bsdf_value(from->bsdf, from->wo, sample->wi, TRANSPORT_RADIANCE, f);
-  double weight = mis && !light->type->delta ? light_share(from, light, sample) : 1;
+  double weight = mis && sample->pdf_solid_angle > 0 ? light_share(from, light, sample) : 1;
   bool any = false;
   for (int c = 0; c < walk->n_channels; c++) {
     value[c] = from->weight[c] * f[c] * cosine * sample->radiance_over_pdf[c] / light->probability *

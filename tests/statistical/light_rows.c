@@ -3,7 +3,10 @@
 // Each is a z-test of level 1e-5; a patch that receives a share of a tenth or more of the flux
 // shows an error of 2 % of one of the two with probability 0.99 (tests/light_statistics.h).
 #define _GNU_SOURCE // mkstemp
+#include "bvh/bvh.h"
 #include "tests/light_statistics.h"
+
+enum { SAMPLES = N / 2 };
 
 static struct arena arena;
 
@@ -16,14 +19,14 @@ static void add(struct moments *m, double x) {
   m->squares += x * x;
 }
 
-// A running sum of N terms of one sign is right to N roundings.
-static const double rounding = N * 0x1p-53;
+// A running sum of SAMPLES terms of one sign is right to SAMPLES roundings.
+static const double rounding = SAMPLES * 0x1p-53;
 
-static double average(const struct moments *m) { return m->sum / N; }
+static double average(const struct moments *m) { return m->sum / SAMPLES; }
 
 static double variance(const struct moments *m) {
-  double mean = average(m), v = m->squares / N - mean * mean;
-  return v > 0 ? v / N : 0;
+  double mean = average(m), v = m->squares / SAMPLES - mean * mean;
+  return v > 0 ? v / SAMPLES : 0;
 }
 
 static void assert_same(const char *what, const struct moments *a, const struct moments *b) {
@@ -88,6 +91,19 @@ static const struct case_of_light cases[] = {
      {1.5, 1.2, 2.2},
      TILTED,
      2},
+    {"goniometric",
+     "AttributeBegin\nTranslate 1 2 3\nRotate 40 0.3 0.2 1\nLightSource \"goniometric\" \"rgb I\" "
+     "[2 1 3] \"string filename\" \"" IMAGE "\" \"float power\" 5\nAttributeEnd",
+     {1, 2, 2},
+     UP,
+     1},
+    {"projection",
+     "AttributeBegin\nTranslate 1 2 3\nRotate 160 0.3 1 0\nScale -1 1 1\nLightSource "
+     "\"projection\" \"float fov\" 110 \"string filename\" \"" IMAGE "\" \"float power\" 5\n"
+     "AttributeEnd",
+     {1, 2, 2},
+     UP,
+     1},
     {"infinite", "LightSource \"infinite\" \"rgb L\" [3 1 2]", {0.4, -0.3, 0.1}, TILTED, 2},
     {"infinite",
      "AttributeBegin\nRotate 40 0.3 0.2 1\nScale -1 1 1\nLightSource \"infinite\" \"string "
@@ -106,6 +122,30 @@ static const struct case_of_light cases[] = {
      "Translate 0 0 1.3\nShape \"sphere\" \"float radius\" 0.5\nAttributeEnd",
      {0.4, 0, 0},
      TILTED,
+     0.9},
+    {"diffuse",
+     "AttributeBegin\nAreaLightSource \"diffuse\" \"string filename\" \"" IMAGE
+     "\" \"bool twosided\" "
+     "true \"float power\" 3\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 "
+     "P\" "
+     "[-1 -1 1.3 1 -1 1.3 1 1 1.3 -1 1 1.3] \"point2 uv\" [0 0 1 0 1 1 0 1]\nAttributeEnd",
+     {-0.4, 0.2, 0},
+     UP,
+     0.9},
+    {"diffuse",
+     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 1 2]\nReverseOrientation\nShape "
+     "\"bilinearmesh\" \"point3 P\" [-1 -1 1.3 1 -1 1 -1 1 1 1 1 1.6] \"float alpha\" 0.4\n"
+     "AttributeEnd",
+     {-0.4, 0.2, 0},
+     UP,
+     0.9},
+    {"diffuse",
+     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 1 2]\nTranslate 0 0 1\nRotate 90 0 "
+     "1 "
+     "0\nShape \"cylinder\" \"float radius\" 0.3 \"float phimax\" 200 \"float alpha\" 0\n"
+     "AttributeEnd",
+     {0.4, -0.2, 0},
+     UP,
      0.9},
 };
 enum { N_CASES = sizeof cases / sizeof *cases };
@@ -128,7 +168,7 @@ static void emit_photons(const struct scene *scene, const char *name, const stru
                          struct moments received[3], struct moments total[3]) {
   struct stream stream = stream_begin(name);
   double area = 4 * vec_dot(patch->s, patch->s);
-  for (uint64_t j = 0; j < N; j++) {
+  for (uint64_t j = 0; j < SAMPLES; j++) {
     double u[LIGHT_U];
     struct emission photon;
     stream_read(&stream, j, u);
@@ -145,7 +185,7 @@ static void emit_photons(const struct scene *scene, const char *name, const stru
 static void connect(const struct scene *scene, const char *name, const struct patch *patch,
                     struct moments irradiance[3]) {
   struct stream stream = stream_begin(name);
-  for (uint64_t j = 0; j < N; j++) {
+  for (uint64_t j = 0; j < SAMPLES; j++) {
     double u[LIGHT_U];
     struct light_sample nee;
     stream_read(&stream, j, u);
@@ -189,7 +229,7 @@ static void test_densities_integrate_to_one(void **state) {
     if (!light->type->background) continue;
     struct stream stream = stream_begin(arena_format(&arena, "light row density %d", i));
     struct moments integral = {0};
-    for (uint64_t j = 0; j < N; j++) {
+    for (uint64_t j = 0; j < SAMPLES; j++) {
       double u[LIGHT_U];
       stream_read(&stream, j, u);
       double z = 1 - 2 * u[0], r = sqrt(1 - z * z), phi = 2 * pi * u[1];
@@ -227,6 +267,65 @@ static void test_samples_are_what_rays_meet(void **state) {
   }
 }
 
+// ---- what rays see ----
+
+// Radiance along a ray of the scene, with what a see-through surface stops.
+static void seen(const struct scene *scene, const struct ray *ray, struct hit hit, double rgb[3]) {
+  const struct light *light = &scene->light[0];
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  if (hit.primitive == PRIMITIVE_NONE) {
+    if (light->type->background) light->type->background(scene, light, ray->d, rgb);
+    return;
+  }
+  struct surface surface = scene_surface(scene, ray, hit);
+  if (scene->shape[surface.shape].light == LIGHT_NONE) return;
+  light->type->radiance(scene, light, &surface, vec_scale(ray->d, -1), rgb);
+  double opacity = surface_opacity(scene, &surface);
+  for (int c = 0; c < 3; c++) rgb[c] *= opacity;
+}
+
+static void look(const struct scene *scene, const char *name, struct vec p,
+                 struct moments irradiance[3]) {
+  struct stream stream = stream_begin(name);
+  struct ray ray[BATCH];
+  struct hit hit[BATCH];
+  for (uint64_t first = 0; first < SAMPLES; first += BATCH) {
+    for (uint64_t j = 0; j < BATCH; j++) {
+      double u[LIGHT_U];
+      stream_read(&stream, first + j, u);
+      double r = sqrt(u[0]), phi = 2 * pi * u[1]; // cosine-weighted about +z
+      struct vec d = vec_normalize(vec(r * cos(phi), r * sin(phi), sqrt(1 - u[0])));
+      ray[j] = (struct ray){p, d, INFINITY, PRIMITIVE_NONE};
+    }
+    bvh_closest_brute_force(scene, ray, hit, BATCH);
+    for (int j = 0; j < BATCH; j++) {
+      double rgb[3];
+      seen(scene, &ray[j], hit[j], rgb);
+      for (int c = 0; c < 3; c++) add(&irradiance[c], pi * rgb[c]);
+    }
+  }
+}
+
+// Lights that rays can meet, from a point that sees all of their lit side (the cylinder's is not
+// met at all, by its alpha of zero).
+static void test_rays_and_connections_agree(void **state) {
+  (void)state;
+  for (int i = 0; i < N_CASES; i++) {
+    const struct case_of_light *c = &cases[i];
+    struct scene scene = scene_of(c);
+    const struct light *light = &scene.light[0];
+    if (light->type->delta || strstr(c->text, "cylinder")) continue;
+    struct vec p = vec(c->centre.x, c->centre.y, 0.05);
+    struct patch point = {.centre = p, .n = vec(0, 0, 1)};
+    struct moments by_ray[3] = {0}, by_connection[3] = {0};
+    look(&scene, arena_format(&arena, "light row rays %d", i), p, by_ray);
+    connect(&scene, arena_format(&arena, "light row point %d", i), &point, by_connection);
+    for (int k = 0; k < 3; k++)
+      assert_same(arena_format(&arena, "%s (case %d), channel %d", c->row, i, k), &by_ray[k],
+                  &by_connection[k]);
+  }
+}
+
 int main(void) {
   arena = arena_reserve();
   write_image();
@@ -234,6 +333,8 @@ int main(void) {
       {"every registered light is tested", test_every_row_is_here, NULL, NULL, NULL},
       {"photons and connections give the same irradiance, and photons all of the power",
        test_photons_and_connections_agree, NULL, NULL, NULL},
+      {"rays and connections give the same irradiance", test_rays_and_connections_agree, NULL, NULL,
+       NULL},
       {"densities of directions integrate to 1", test_densities_integrate_to_one, NULL, NULL, NULL},
       {"a sampled direction is what a ray meets", test_samples_are_what_rays_meet, NULL, NULL,
        NULL},

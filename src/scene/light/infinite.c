@@ -9,7 +9,7 @@
 #include "scene/texels.h"
 
 struct infinite {
-  struct vec x, y, z;          // the light's axes in world space, unit length
+  struct vec axis[3];          // of the map, in world space
   double L[3];                 // radiance, or what multiplies the image
   const struct texels *texels; // NULL: constant
   bool gray;
@@ -18,32 +18,6 @@ struct infinite {
 };
 
 // ---- reading ----
-
-static const double luminance[3] = {0.2126, 0.7152, 0.0722};
-
-static struct vec axis(const struct scene_builder *builder, double x, double y, double z) {
-  return transform_direction(&builder->world_from_object, vec(x, y, z));
-}
-
-// The map keeps areas only if the transformation keeps angles; matrices of a few digits do so to
-// 1e-3, and the axes are made exactly orthogonal.
-static bool read_axes(struct scene_builder *builder, struct params *params,
-                      struct infinite *infinite) {
-  const double tolerance = 1e-3;
-  struct vec x = axis(builder, 1, 0, 0), y = axis(builder, 0, 1, 0), z = axis(builder, 0, 0, 1);
-  double xx = vec_dot(x, x), yy = vec_dot(y, y), zz = vec_dot(z, z), most = tolerance * xx;
-  bool similar = fabs(yy - xx) <= most && fabs(zz - xx) <= most && fabs(vec_dot(x, y)) <= most &&
-                 fabs(vec_dot(y, z)) <= most && fabs(vec_dot(z, x)) <= most;
-  if (!similar)
-    return params_complain(params, "filename",
-                           "the current transformation stretches the image: it may only turn, "
-                           "mirror and scale all axes alike");
-  infinite->x = vec_normalize(x);
-  infinite->y = vec_normalize(vec_along(y, infinite->x, -vec_dot(infinite->x, y)));
-  infinite->z = vec_cross(infinite->x, infinite->y);
-  if (vec_dot(infinite->z, z) < 0) infinite->z = vec_scale(infinite->z, -1);
-  return true;
-}
 
 static double upward_cosine(const void *data, int x, int y) {
   const struct texels *texels = data;
@@ -56,7 +30,7 @@ static double upward_cosine(const void *data, int x, int y) {
 static double image_illuminance(const struct texels *texels) {
   double rgb[3], n = (double)texels->width * texels->height;
   texels_sum(texels, upward_cosine, texels, rgb);
-  return (luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2]) * 2 * light_pi / n;
+  return light_luminance(rgb) * 2 * light_pi / n;
 }
 
 static bool read_image(struct scene_builder *builder, struct params *params,
@@ -69,7 +43,7 @@ static bool read_image(struct scene_builder *builder, struct params *params,
     return params_complain(params, "filename",
                            "an equal-area map is square, and this image has %d x %d pixels",
                            texels->width, texels->height);
-  if (!read_axes(builder, params, infinite)) return false;
+  if (!light_axes(builder, params, infinite->axis)) return false;
   texels_weigh(texels, NULL, NULL, builder->arena);
   double n = (double)texels->width * texels->height;
   double total = input_is_given(params, "illuminance")
@@ -141,8 +115,7 @@ static struct arrival sample_direction(const struct infinite *infinite, const do
     return out;
   }
   struct texel texel = texels_choose(infinite->texels, u);
-  struct vec d = octahedral_direction(texel.u, texel.v);
-  out.wi = vec_along(vec_along(vec_scale(infinite->x, d.x), infinite->y, d.y), infinite->z, d.z);
+  out.wi = light_from_axes(infinite->axis, octahedral_direction(texel.u, texel.v));
   out.pdf_solid_angle = texel_pdf(infinite, &texel);
   texel_radiance(infinite, &texel, out.radiance);
   return out;
@@ -150,8 +123,7 @@ static struct arrival sample_direction(const struct infinite *infinite, const do
 
 static struct texel find_texel(const struct infinite *infinite, struct vec d) {
   double u, v;
-  octahedral_square(vec(vec_dot(d, infinite->x), vec_dot(d, infinite->y), vec_dot(d, infinite->z)),
-                    &u, &v);
+  octahedral_square(light_to_axes(infinite->axis, d), &u, &v);
   return texels_at(infinite->texels, u, v);
 }
 

@@ -62,6 +62,40 @@ static inline void light_from_to(struct scene_builder *builder, struct params *p
   *axis = vec_normalize(along);
 }
 
+// The light's axes in world space, of unit length, for lights with a map of directions. It keeps
+// its areas only if the transformation keeps angles; matrices of a few digits do so to 1e-3, and
+// the axes are made exactly orthogonal.
+static inline bool light_axes(const struct scene_builder *builder, struct params *params,
+                              struct vec axis[3]) {
+  const struct transform *t = &builder->world_from_object;
+  struct vec x = transform_direction(t, vec(1, 0, 0)), y = transform_direction(t, vec(0, 1, 0)),
+             z = transform_direction(t, vec(0, 0, 1));
+  double xx = vec_dot(x, x), yy = vec_dot(y, y), zz = vec_dot(z, z), most = 1e-3 * xx;
+  bool similar = fabs(yy - xx) <= most && fabs(zz - xx) <= most && fabs(vec_dot(x, y)) <= most &&
+                 fabs(vec_dot(y, z)) <= most && fabs(vec_dot(z, x)) <= most;
+  if (!similar)
+    return params_complain(params, "filename",
+                           "the current transformation stretches the image: it may only turn, "
+                           "mirror and scale all axes alike");
+  axis[0] = vec_normalize(x);
+  axis[1] = vec_normalize(vec_along(y, axis[0], -vec_dot(axis[0], y)));
+  axis[2] = vec_cross(axis[0], axis[1]);
+  if (vec_dot(axis[2], z) < 0) axis[2] = vec_scale(axis[2], -1);
+  return true;
+}
+
+static inline struct vec light_from_axes(const struct vec axis[3], struct vec d) {
+  return vec_along(vec_along(vec_scale(axis[0], d.x), axis[1], d.y), axis[2], d.z);
+}
+
+static inline struct vec light_to_axes(const struct vec axis[3], struct vec d) {
+  return vec(vec_dot(d, axis[0]), vec_dot(d, axis[1]), vec_dot(d, axis[2]));
+}
+
+static inline double light_luminance(const double rgb[3]) {
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
 // The last words of every `read`: large numbers may have multiplied to infinity.
 static inline bool light_finish(struct params *params, const struct light *light) {
   for (int c = 0; c < 3; c++)

@@ -1,4 +1,5 @@
-// Environments: the equal-area octahedral map, what an image means, what is refused.
+// Lights with images: the equal-area octahedral map, where texels are, what power means, what is
+// refused.
 #define _GNU_SOURCE // mkstemp
 #include "scene/octahedral.h"
 #include "scene/texels.h"
@@ -86,10 +87,10 @@ static float numbered(int x, int y) { return (float)(1 + x + 4 * y); }
 static float two(int x, int y) { return (void)x, (void)y, 2; }
 static float some_negative(int x, int y) { return x == y ? -3 : 2; }
 
-#define NUMBERED "light-infinite-numbered.pfm"
-#define TWO "light-infinite-two.pfm"
-#define WIDE "light-infinite-wide.pfm"
-#define NEGATIVE "light-infinite-negative.pfm"
+#define NUMBERED "light-images-numbered.pfm"
+#define TWO "light-images-two.pfm"
+#define WIDE "light-images-wide.pfm"
+#define NEGATIVE "light-images-negative.pfm"
 #define ENVIRONMENT(rest) "LightSource \"infinite\" \"string filename\" \"" rest
 
 static double arrives(const char *world, struct vec d) {
@@ -121,6 +122,133 @@ static void test_texels_are_where_pbrt_has_them(void **state) {
 static double power(const char *world) {
   struct scene scene = light_scene(arena_format(&arena, "%s%s", world, LIGHT_PLANE), &arena);
   return scene.light[0].power[1];
+}
+
+// ---- points with images ----
+
+// The intensity in direction d.
+static double intensity(const char *world, struct vec d) {
+  struct scene scene = light_scene(arena_format(&arena, "%s%s", world, LIGHT_PLANE), &arena);
+  struct light_sample nee;
+  const struct light *light = &scene.light[0];
+  if (!light->type->sample(&scene, light, vec_scale(d, 3), NULL, &nee)) return 0;
+  assert_true(nee.radiance_over_pdf[0] == nee.radiance_over_pdf[2] && nee.pdf_solid_angle == 0);
+  return nee.radiance_over_pdf[0] * 9 * vec_dot(d, d);
+}
+
+// +y is the map's pole, z its y.
+static void test_goniometric(void **state) {
+  (void)state;
+  const char *light = "LightSource \"goniometric\" \"string filename\" \"" NUMBERED "\"";
+  near(intensity(light, vec(-1, -9, -1)), 1, 1e-14, "top left");
+  near(intensity(light, vec(1, -9, -1)), 4, 1e-14, "top right");
+  near(intensity(light, vec(-1, -9, 1)), 13, 1e-14, "bottom left");
+  near(intensity(light, vec(1, 9, 1)), 11, 1e-14, "right and below the centre");
+  const char *scaled = "LightSource \"goniometric\" \"string filename\" \"" NUMBERED
+                       "\" \"float scale\" 3 \"rgb I\" [2 2 2]";
+  near(intensity(scaled, vec(1, 9, 1)), 66, 1e-13, "scale");
+  near(power(scaled), 4 * pi * 6 * 8.5, 1e-11, "power");
+  const char *powered =
+      "LightSource \"goniometric\" \"string filename\" \"" NUMBERED "\" \"float power\" 5";
+  near(power(powered), 5, 1e-13, "power");
+  near(intensity(powered, vec(1, 9, 1)), 11 * 5 / (4 * pi * 8.5), 1e-14, "power");
+}
+
+// Along +z, x to the right and y up; the shorter side spans fov.
+static void test_projection(void **state) {
+  (void)state;
+#define PROJECTION "LightSource \"projection\" \"string filename\" \""
+  const char *light = PROJECTION NUMBERED "\"";
+  near(intensity(light, vec(-0.99, 0.99, 1)), 1, 1e-14, "top left");
+  near(intensity(light, vec(0.99, 0.99, 1)), 4, 1e-14, "top right");
+  near(intensity(light, vec(-0.99, -0.99, 1)), 13, 1e-14, "bottom left");
+  near(intensity(light, vec(0.01, -0.49, 1)), 11, 1e-14, "right and below the centre");
+  near(intensity(light, vec(1.01, 0, 1)), 0, 0, "outside");
+  near(intensity(light, vec(0, 0, -1)), 0, 0, "behind");
+  const char *wide = PROJECTION WIDE "\" \"float fov\" 60 \"float scale\" 3";
+  double tangent = sqrt(1. / 3);
+  near(intensity(wide, vec(0, 0.99 * tangent, 1)), 6, 1e-14, "wide");
+  near(intensity(wide, vec(0, 1.01 * tangent, 1)), 0, 0, "wide");
+  near(intensity(wide, vec(0.99 * tangent * 4 / 3, 0, 1)), 6, 1e-14, "wide");
+  near(intensity(wide, vec(1.01 * tangent * 4 / 3, 0, 1)), 0, 0, "wide");
+  // A whole side of a cube sees a sixth of the sphere.
+  near(power(PROJECTION TWO "\""), 2 * 4 * pi / 6, 1e-13, "power");
+  // pbrt-v4's sum: cos^3 at the centres of texels, at (1/4, 1/4), (1/4, 3/4) ... of A = 4.
+  double sum = 0;
+  for (int k = 0; k < 16; k++) {
+    double x = (k % 4 - 1.5) / 2, y = (k / 4 - 1.5) / 2;
+    sum += 4. / 16 * 2 * pow(1 + x * x + y * y, -1.5);
+  }
+  near(intensity(PROJECTION TWO "\" \"float power\" 5", vec(0, 0, 1)), 2 * 5 / sum, 1e-13, "power");
+}
+
+// ---- area lights with images ----
+
+static double leaves(const struct scene *scene, double u, double v) {
+  struct surface surface = {.ng = vec(0, 0, 1), .uv = {u, v}};
+  double rgb[3];
+  scene->light[0].type->radiance(scene, &scene->light[0], &surface, vec(0, 0.6, 0.8), rgb);
+  return rgb[0];
+}
+
+// v upwards, bilinear between centres, constant beyond the outermost.
+static void test_area(void **state) {
+  (void)state;
+#define AREA(rest)                                                                                 \
+  "AreaLightSource \"diffuse\" \"string filename\" \"" NUMBERED "\" " rest                         \
+  "\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 3 0 0 0 2 0 3 2 0]"
+  struct scene scene = light_scene(AREA("\"float scale\" 3"), &arena);
+  near(leaves(&scene, 0.125, 0.875), 3, 1e-14, "top left");
+  near(leaves(&scene, 0.875, 0.125), 48, 1e-14, "bottom right");
+  near(leaves(&scene, 0.25, 0.875), 4.5, 1e-14, "between");
+  near(leaves(&scene, 0.5, 0.5), 25.5, 1e-14, "the centre");
+  near(leaves(&scene, 0, 1), 3, 1e-14, "a corner");
+  near(leaves(&scene, 1, 0), 48, 1e-14, "a corner");
+  near(scene.light[0].power[1], pi * 6 * 3 * 8.5, 1e-11, "power");
+  scene = light_scene(AREA("\"float power\" 5 \"bool twosided\" true"), &arena);
+  near(scene.light[0].power[1], 5, 1e-13, "power");
+  near(leaves(&scene, 0.125, 0.875), 5 / (2 * pi * 6 * 8.5), 1e-14, "power");
+}
+
+// Constant alpha: what leaves is less by it, unless it is 0, which nothing ever hits.
+static void test_alpha(void **state) {
+  (void)state;
+  const struct {
+    const char *text;
+    double power, connected;
+  } at[] = {{"\"float alpha\" 1", 1, 1},
+            {"\"float alpha\" 0.25", 0.25, 0.25},
+            {"\"float alpha\" 0", 1, 1},
+            {"\"float alpha\" -1", 1, 1}};
+  for (int k = 0; k < 4; k++) {
+    struct scene scene = light_scene(
+        arena_format(&arena, "AreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\nShape \"disk\" %s",
+                     at[k].text),
+        &arena);
+    const struct light *light = &scene.light[0];
+    struct light_sample nee;
+    struct emission photon;
+    double u[LIGHT_U] = {0.3, 0.4, 0.5, 0.6};
+    assert_true(light->type->sample(&scene, light, vec(0.1, 0.2, 2), u, &nee));
+    light->type->emit(&scene, light, u, &photon);
+    near(light->power[0], 3 * pi * pi * at[k].power, 1e-13, "power");
+    near(photon.flux[0], 3 * pi * pi * at[k].power, 1e-13, "flux");
+    struct surface hit = {.p = vec_along(vec(0.1, 0.2, 2), nee.wi, nee.distance),
+                          .ng = vec(0, 0, 1)};
+    double pdf = light->type->pdf(&scene, light, vec(0.1, 0.2, 2), &hit, nee.wi);
+    assert_true((nee.pdf_solid_angle == 0) == (k >= 2) && (pdf == 0) == (k >= 2));
+    if (k < 2) near(nee.radiance_over_pdf[0] * pdf, 3 * at[k].connected, 1e-13, "connected");
+  }
+}
+
+static void test_interface_is_dark(void **state) {
+  (void)state;
+  struct scene scene = {0};
+  struct problem problem;
+  const char *world =
+      "Material \"interface\"\nAreaLightSource \"diffuse\"\nShape \"disk\"" LIGHT_PLANE;
+  assert_false(light_scene_try(world, &arena, &scene, &problem));
+  assert_non_null(strstr(problem.text, "no light emits"));
 }
 
 // The bounding sphere's R^2 is 32: 4 pi L times the disc pi R^2.
@@ -160,6 +288,15 @@ static void test_refusals(void **state) {
       {ENVIRONMENT(WIDE "\""), "4 x 3 pixels"},
       {ENVIRONMENT("no-such-file.pfm\""), "no-such-file.pfm"},
       {ENVIRONMENT(TWO "\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]"), "portal"},
+      {"LightSource \"goniometric\"", "needs \"string filename\""},
+      {"LightSource \"goniometric\" \"string filename\" \"" WIDE "\"", "4 x 3 pixels"},
+      {"Scale 1 2 1 LightSource \"goniometric\" \"string filename\" \"" TWO "\"", "stretches"},
+      {"LightSource \"projection\"", "needs \"string filename\""},
+      {PROJECTION TWO "\" \"float fov\" 180", "(0, 180)"},
+      {PROJECTION TWO "\" \"float power\" 0", "greater than zero"},
+      {"AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"string filename\" \"" TWO
+       "\" Shape \"disk\"",
+       "exclude each other"},
       {"Scale 1 2 1 " ENVIRONMENT(TWO "\""), "stretches"},
   };
   for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
@@ -221,12 +358,18 @@ int main(void) {
        NULL},
       {"texels are where pbrt has them, turned and mirrored with the light",
        test_texels_are_where_pbrt_has_them, NULL, NULL, NULL},
+      {"a goniometric light's texels, scale and power are pbrt's", test_goniometric, NULL, NULL,
+       NULL},
+      {"a projection's texels, angle and power are pbrt's", test_projection, NULL, NULL, NULL},
+      {"an area light's image is looked up as in pbrt", test_area, NULL, NULL, NULL},
+      {"alpha dims, and zero hides without dimming", test_alpha, NULL, NULL, NULL},
+      {"a shape of material interface emits nothing", test_interface_is_dark, NULL, NULL, NULL},
       {"power and illuminance are pbrt's", test_power, NULL, NULL, NULL},
       {"what is no environment is refused with its line", test_refusals, NULL, NULL, NULL},
       {"a constant lights a surface with pi L", test_constant_closed_form, NULL, NULL, NULL},
       {"texels are chosen in proportion to their weight", test_choice, NULL, NULL, NULL},
   };
-  int failed = cmocka_run_group_tests_name("light_infinite", tests, NULL, NULL);
+  int failed = cmocka_run_group_tests_name("light_images", tests, NULL, NULL);
   static const char *const names[] = {NUMBERED, TWO, WIDE, NEGATIVE};
   for (int k = 0; k < 4; k++) unlink(arena_format(&arena, "%s/%s", P_tmpdir, names[k]));
   return failed;
