@@ -66,7 +66,8 @@ static bool read_planes(const struct format *format, struct text text, const cha
         return problem_set(problem, "%s: pixel %d, %d is not a finite number", path,
                            (int)(j % image.width), (int)(j / image.width));
     }
-  *raster = (struct raster){image.width, image.height, n, NULL, value, {0}};
+  *raster = (struct raster){
+      .width = image.width, .height = image.height, .n_channels = n, .value = value};
   return true;
 }
 
@@ -103,6 +104,7 @@ bool raster_decode(struct text text, const char *path, struct encoding encoding,
                          : format->texels(text, path, encoding, arena, scratch, raster, problem);
   if (!ok) return false;
   if (format->texels != png_file_texels) encoding.curve = ENCODING_SRGB;
+  raster->encoding = encoding;
   for (int b = 0; b < 256; b++) raster->linear[b] = encoding_decode(encoding, b / 255.0);
   if (raster->n_channels == 4 && is_opaque(raster)) drop_alpha(raster);
   return true;

@@ -16,10 +16,11 @@ double encoding_decode(struct encoding, double encoded);
 
 struct raster {
   int width, height;
-  int n_channels;            // 1: gray; 3: R, G, B; 4: R, G, B and an alpha that is not 1 everywhere
+  int n_channels; // 1: gray; 3: R, G, B; 4: R, G, B and an alpha that is not 1 everywhere
   const unsigned char *byte; // of files with 8 bits a value, as encoded (alpha too); else NULL
   const float *value;        // of all others, linear and finite; else NULL
   double linear[256];        // of a byte
+  struct encoding encoding;  // of bytes
 };
 
 static inline double raster_value(const struct raster *raster, int x, int y, int channel) {
@@ -27,8 +28,9 @@ static inline double raster_value(const struct raster *raster, int x, int y, int
   return raster->byte ? raster->linear[raster->byte[at]] : (double)raster->value[at];
 }
 
-// The bytes of a file whose extension (of path, in any case) says what they are: exr, pfm, hdr, png,
-// jpg, jpeg or tga. As in pbrt only png looks at the encoding: jpg and tga are sRGB, the others linear.
+// The bytes of a file whose extension (of path, in any case) says what they are: exr, pfm, hdr,
+// png, jpg, jpeg or tga. As in pbrt only png looks at the encoding: jpg and tga are sRGB, the
+// others linear.
 bool raster_decode(struct text, const char *path, struct encoding, struct arena *,
                    struct arena scratch, struct raster *, struct problem *);
 

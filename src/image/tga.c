@@ -129,6 +129,7 @@ bool tga_file_texels(struct text text, const char *path, struct encoding encodin
   if (!read_header(&tga)) return false;
   int n = tga.kind == 3 ? 1 : 3;
   unsigned char *byte = arena_new(arena, unsigned char, (ptrdiff_t)tga.width *tga.height *n);
-  *raster = (struct raster){tga.width, tga.height, n, byte, NULL, {0}};
+  *raster =
+      (struct raster){.width = tga.width, .height = tga.height, .n_channels = n, .byte = byte};
   return read_pixels(&tga, byte, n);
 }

@@ -2,9 +2,10 @@
 // finest level, bilinear ("point": the nearest texel); pbrt blurs it over a pixel's footprint.
 // Floats of an image with colours are their mean ("point": red), of one with alpha its alpha, as in
 // pbrt.
-#include "image/raster.h"
 #include "scene/mapping.h"
+#include "scene/resize.h"
 #include "scene/texture/inputs.h"
+#include "scene/wrap.h"
 
 #include <string.h>
 
@@ -12,7 +13,7 @@ struct imagemap {
   struct mapping mapping;
   const struct wrap *wrap;
   const struct raster *raster;
-  const char *filename; // with the encoding, what tells rasters apart
+  const char *filename; // with encoding and wrap, what tells rasters apart
   struct encoding encoding;
   double scale;
   bool invert, point, spectrum, gray;
@@ -20,77 +21,20 @@ struct imagemap {
 
 extern const struct texture_type texture_imagemap;
 
-// ---- wrapping ----
-
-// A whole number at[k] outside [0, size[k]) is moved inside; false: the texel is black.
-struct wrap {
-  const char *name;
-  bool (*move)(double at[2], const int size[2]);
-};
-
-static bool move_repeat(double at[2], const int size[2]) {
-  for (int k = 0; k < 2; k++) at[k] -= size[k] * floor(at[k] / size[k]);
-  return true;
-}
-
-static bool move_black(double at[2], const int size[2]) {
-  (void)at, (void)size;
-  return false;
-}
-
-// to_index does the rest.
-static bool move_clamp(double at[2], const int size[2]) {
-  (void)at, (void)size;
-  return true;
-}
-
-// Over an edge of an equal-area octahedral map the same edge is met, in the other direction.
-static bool move_octahedral(double at[2], const int size[2]) {
-  for (int k = 0; k < 2; k++) {
-    if (at[k] >= 0 && at[k] < size[k]) continue;
-    at[k] = at[k] < 0 ? -at[k] : 2.0 * size[k] - 1 - at[k];
-    at[1 - k] = size[1 - k] - 1 - at[1 - k];
-  }
-  return true;
-}
-
-static const struct wrap wraps[] = {
-    {"repeat", move_repeat},
-    {"black", move_black},
-    {"clamp", move_clamp},
-    {"octahedralsphere", move_octahedral},
-};
-enum { N_WRAPS = sizeof wraps / sizeof *wraps };
-
-static int to_index(double at, int size) {
-  if (!(at > 0)) return 0;
-  return at < size - 1 ? (int)at : size - 1;
-}
-
 // ---- looking up ----
-
-static void get_texel(const struct imagemap *map, double x, double y, int first, int n,
-                      double texel[3]) {
-  const struct raster *raster = map->raster;
-  double at[2] = {x, y};
-  int size[2] = {raster->width, raster->height};
-  bool inside = x >= 0 && x < size[0] && y >= 0 && y < size[1];
-  bool black = !inside && !map->wrap->move(at, size);
-  int column = to_index(at[0], size[0]), row = to_index(at[1], size[1]);
-  for (int c = 0; c < n; c++) texel[c] = black ? 0 : raster_value(raster, column, row, first + c);
-}
 
 static void look_up_nearest(const struct imagemap *map, double x, double y, int first, int n,
                             double texel[3]) {
   // Halves away from zero, as C's round.
-  get_texel(map, x < 0 ? -floor(0.5 - x) : floor(x + 0.5), y < 0 ? -floor(0.5 - y) : floor(y + 0.5),
-            first, n, texel);
+  wrap_texel(map->wrap, map->raster, x < 0 ? -floor(0.5 - x) : floor(x + 0.5),
+             y < 0 ? -floor(0.5 - y) : floor(y + 0.5), first, n, texel);
 }
 
 static void look_up_bilinear(const struct imagemap *map, double x, double y, int first, int n,
                              double sum[3]) {
   double x0 = floor(x), y0 = floor(y), dx = x - x0, dy = y - y0, corner[4][3];
-  for (int k = 0; k < 4; k++) get_texel(map, x0 + (k & 1), y0 + (k >> 1), first, n, corner[k]);
+  for (int k = 0; k < 4; k++)
+    wrap_texel(map->wrap, map->raster, x0 + (k & 1), y0 + (k >> 1), first, n, corner[k]);
   for (int c = 0; c < n; c++)
     sum[c] = (1 - dx) * (1 - dy) * corner[0][c] + dx * (1 - dy) * corner[1][c] +
              (1 - dx) * dy * corner[2][c] + dx * dy * corner[3][c];
@@ -142,8 +86,7 @@ static bool is_gray_raster(const struct raster *raster) {
 
 static bool read_wrap(struct params *params, struct imagemap *map) {
   const char *name = params_string(params, "wrap", "repeat");
-  for (int k = 0; k < N_WRAPS; k++)
-    if (strcmp(wraps[k].name, name) == 0) map->wrap = &wraps[k];
+  map->wrap = wrap_find(name);
   return map->wrap ||
          params_complain(params, "wrap",
                          "\"%s\" does not wrap (known: repeat, black, clamp, octahedralsphere)",
@@ -170,7 +113,7 @@ static bool read_encoding(struct params *params, struct imagemap *map) {
 
 static bool is_same_file(const struct imagemap *a, const struct imagemap *b) {
   return strcmp(a->filename, b->filename) == 0 && a->encoding.curve == b->encoding.curve &&
-         a->encoding.gamma == b->encoding.gamma;
+         a->encoding.gamma == b->encoding.gamma && a->wrap == b->wrap;
 }
 
 // The raster of a texture named before, so that every file is read once.
@@ -191,6 +134,7 @@ static bool read_raster(struct scene_builder *builder, struct params *params, st
   if (!scene_read_file(builder, params, "filename", map->filename, &scratch, &text)) return false;
   if (!raster_decode(text, map->filename, map->encoding, builder->arena, scratch, raster, &problem))
     return params_complain(params, "filename", "%s", problem.text);
+  resize_to_powers_of_two(raster, map->wrap, builder->arena, scratch);
   map->raster = raster;
   map->gray = is_gray_raster(raster);
   return true;
