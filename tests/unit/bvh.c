@@ -93,6 +93,26 @@ static void ever_smaller(struct mesh *m, struct draw *draw) {
   }
 }
 
+// Twisted, plane, folded, and with two corners in one place.
+static void add_patches(struct mesh *m, struct draw *draw, int n, double room, double size) {
+  for (int i = 0; i < n; i++) {
+    struct vec center = draw_in_cube(draw, room), corner[4];
+    for (int j = 0; j < 4; j++) corner[j] = vec_add(center, draw_in_cube(draw, size));
+    int kind = draw_below(draw, 4);
+    if (kind == 1) corner[3] = vec_sub(vec_add(corner[1], corner[2]), corner[0]);
+    if (kind == 2) corner[3] = vec_along(corner[0], vec_sub(corner[1], corner[2]), 0.3);
+    if (kind == 3) corner[3] = corner[2];
+    mesh_add_bilinear(m, corner);
+  }
+}
+
+static void patches(struct mesh *m, struct draw *draw) {
+  mesh_add_shape(m, &shape_bilinearmesh);
+  add_patches(m, draw, 200, 2.7, 1.3);
+  mesh_add_shape(m, &shape_trianglemesh);
+  add_triangles(m, draw, 20, 2.7, vec(1.3, 1.3, 1.3));
+}
+
 static struct quadric quadric_at(struct draw *draw, double room) {
   struct vec x = draw_direction(draw), y, z, at = draw_in_cube(draw, room);
   vec_basis(x, &y, &z);
@@ -114,6 +134,9 @@ static void mixed(struct mesh *m, struct draw *draw) {
     mesh_add_quadric(m, &shape_sphere, q);
     q.height = draw_between(draw, -1, 1), q.inner_radius = i % 2 ? 0 : 0.4 * q.radius;
     mesh_add_quadric(m, &shape_disk, q);
+    mesh_add_quadric(m, &shape_cylinder, q);
+    mesh_add_shape(m, &shape_bilinearmesh);
+    add_patches(m, draw, 2, 3.4, 1.1);
     mesh_add_shape(m, &shape_trianglemesh);
     add_triangles(m, draw, 3, 3.4, vec(1.1, 1.1, 1.1));
   }
@@ -131,6 +154,7 @@ static const struct {
     {"far away", far_away},
     {"boxes", boxes},
     {"ever smaller", ever_smaller},
+    {"patches", patches},
     {"mixed", mixed},
 };
 enum { N_SCENES = sizeof hard_scenes / sizeof *hard_scenes };
@@ -161,13 +185,17 @@ struct picked {
   struct vec p[3];
 };
 
+// Or three corners of a patch.
 static struct picked pick_triangle(const struct mesh *m, struct draw *draw) {
   const struct scene *s = &m->scene;
   struct picked t;
-  do t.primitive = (uint32_t)draw_below(draw, (int)s->n_primitives);
-  while (s->shape[s->shape_of[t.primitive]].type != &shape_trianglemesh);
-  const struct shape *shape = &s->shape[s->shape_of[t.primitive]];
-  const uint32_t *row = s->triangle[shape->local + t.primitive - shape->first];
+  const struct shape *shape;
+  do {
+    t.primitive = (uint32_t)draw_below(draw, (int)s->n_primitives);
+    shape = &s->shape[s->shape_of[t.primitive]];
+  } while (shape->type != &shape_trianglemesh && shape->type != &shape_bilinearmesh);
+  uint32_t k = shape->local + t.primitive - shape->first;
+  const uint32_t *row = shape->type == &shape_trianglemesh ? s->triangle[k] : s->patch[k];
   for (int i = 0; i < 3; i++) t.p[i] = mesh_vertex(m, row[i]);
   return t;
 }
@@ -234,7 +262,7 @@ static void check_equal(const struct mesh *m, const struct bvh *bvh, const struc
 static void check_scene(int scene, struct bvh_options options, const char *name) {
   struct draw draw = draw_named(name);
   draw.path = (uint64_t)scene << 32;
-  struct mesh m = mesh_new(200, 1000);
+  struct mesh m = mesh_new(400, 1000);
   hard_scenes[scene].add(&m, &draw);
   mesh_finish(&m);
   struct bvh *bvh = bvh_build(&m.scene, options, &m.arena);
@@ -294,7 +322,7 @@ static void the_tree_does_not_depend_on_the_number_of_threads(void **state) {
   (void)state;
   struct draw draw = draw_named(__func__);
   for (int i = 0; i < N_SCENES; i++) {
-    struct mesh m = mesh_new(200, 1000);
+    struct mesh m = mesh_new(400, 1000);
     hard_scenes[i].add(&m, &draw);
     mesh_finish(&m);
     static const int threads[] = {1, 2, 7};
@@ -359,6 +387,28 @@ static void no_ray_leaves_a_box_of_triangles(void **state) {
   mesh_add_shape(&m, &shape_trianglemesh);
   mesh_add_grid_box(&m, vec(0, 0, 0), 1, 20);
   check_closed(&m, vec(0, 0, 0), 0.999, 1, __func__);
+}
+
+static void no_ray_leaves_a_box_of_patches(void **state) {
+  (void)state;
+  struct mesh m = mesh_new(1, 6 * 20 * 20 * 2);
+  mesh_add_shape(&m, &shape_bilinearmesh);
+  mesh_add_grid_box(&m, vec(0, 0, 0), 1, 20);
+  check_closed(&m, vec(0, 0, 0), 0.999, 1, __func__);
+}
+
+// Moved corners make every patch a twisted one; neighbours still share them.
+static void no_ray_leaves_a_body_of_twisted_patches(void **state) {
+  (void)state;
+  struct mesh m = mesh_new(1, 6 * 12 * 12 * 2);
+  mesh_add_shape(&m, &shape_bilinearmesh);
+  mesh_add_grid_box(&m, vec(0, 0, 0), 1, 12);
+  for (uint32_t k = 0; k < m.scene.n_positions; k++) {
+    float *p = m.scene.position[k];
+    float scale = 1 + 0.3f * p[0] * p[1] + 0.2f * p[1] * p[2] * p[2];
+    for (int j = 0; j < 3; j++) p[j] *= scale;
+  }
+  check_closed(&m, vec(0, 0, 0), 0.3, 0, __func__);
 }
 
 static void no_ray_leaves_a_sphere_a_million_away(void **state) {
@@ -435,6 +485,8 @@ int main(void) {
       cmocka_unit_test(the_tree_does_not_depend_on_the_number_of_threads),
       cmocka_unit_test(no_ray_leaves_a_sphere_of_triangles),
       cmocka_unit_test(no_ray_leaves_a_box_of_triangles),
+      cmocka_unit_test(no_ray_leaves_a_box_of_patches),
+      cmocka_unit_test(no_ray_leaves_a_body_of_twisted_patches),
       cmocka_unit_test(no_ray_leaves_a_sphere_a_million_away),
       cmocka_unit_test(no_ray_leaves_a_sphere_of_a_millimetre),
       cmocka_unit_test(a_hundred_thousand_coincident_triangles_are_a_balanced_tree),

@@ -7,7 +7,8 @@
 #include "numeric/rng.h"
 #include "scene/scene.h"
 
-extern const struct shape_type shape_trianglemesh, shape_sphere, shape_disk;
+extern const struct shape_type shape_trianglemesh, shape_sphere, shape_disk, shape_cylinder,
+    shape_bilinearmesh;
 
 // A stream of numbers named by its test.
 struct draw {
@@ -65,6 +66,7 @@ static inline struct mesh mesh_new(int shapes, int primitives) {
   m.arena = m.start;
   m.scene.position = arena_alloc(&m.arena, 3 * primitives, sizeof(float[3]), alignof(float));
   m.scene.triangle = arena_alloc(&m.arena, primitives, sizeof(uint32_t[3]), alignof(uint32_t));
+  m.scene.patch = arena_alloc(&m.arena, primitives, sizeof(uint32_t[4]), alignof(uint32_t));
   m.scene.quadric = arena_new(&m.arena, struct quadric, primitives);
   m.scene.shape = arena_new(&m.arena, struct shape, shapes);
   m.scene.shape_of = arena_new(&m.arena, uint32_t, primitives);
@@ -75,8 +77,11 @@ static inline void mesh_release(struct mesh *m) { mesh_memory(&m->start); }
 
 static inline void mesh_add_shape(struct mesh *m, const struct shape_type *type) {
   struct scene *s = &m->scene;
-  uint32_t local = type == &shape_trianglemesh ? s->n_triangles : s->n_quadrics;
-  s->shape[s->n_shapes++] = (struct shape){.type = type, .first = s->n_primitives, .local = local};
+  uint32_t local = type == &shape_trianglemesh   ? s->n_triangles
+                   : type == &shape_bilinearmesh ? s->n_patches
+                                                 : s->n_quadrics;
+  s->shape[s->n_shapes++] = (struct shape){
+      .type = type, .first = s->n_primitives, .local = local, .normal = ROW_NONE, .uv = ROW_NONE};
 }
 
 static inline void mesh_count_primitive(struct mesh *m) {
@@ -102,6 +107,13 @@ static inline void mesh_add_triangle(struct mesh *m, struct vec a, struct vec b,
   uint32_t first = mesh_add_vertex(m, a);
   mesh_add_vertex(m, b), mesh_add_vertex(m, c);
   mesh_add_rows(m, first, first + 1, first + 2);
+}
+
+// Of the last shape, which is a bilinear mesh: p00, p10, p01, p11.
+static inline void mesh_add_bilinear(struct mesh *m, const struct vec corner[4]) {
+  uint32_t *row = m->scene.patch[m->scene.n_patches++];
+  for (int i = 0; i < 4; i++) row[i] = mesh_add_vertex(m, corner[i]);
+  mesh_count_primitive(m);
 }
 
 // A shape of its own.
@@ -162,8 +174,9 @@ static inline void mesh_add_icosphere(struct mesh *m, struct vec center, double 
                    vec_normalize(corner[face[i][1]]), vec_normalize(corner[face[i][2]]), level);
 }
 
-// A box of 12 n^2 triangles.
+// A box of 12 n^2 triangles, or 6 n^2 patches if the last shape is a bilinear mesh.
 static inline void mesh_add_grid_box(struct mesh *m, struct vec center, double half, int n) {
+  bool patches = m->scene.shape[m->scene.n_shapes - 1].type == &shape_bilinearmesh;
   for (int face = 0; face < 6; face++)
     for (int i = 0; i < n * n; i++) {
       struct vec corner[4];
@@ -173,6 +186,10 @@ static inline void mesh_add_grid_box(struct mesh *m, struct vec center, double h
         at[(face / 2 + 1) % 3] = half * (2.0 * (i % n + c % 2) / n - 1);
         at[(face / 2 + 2) % 3] = half * (2.0 * (i / n + c / 2) / n - 1);
         corner[c] = vec_add(center, vec(at[0], at[1], at[2]));
+      }
+      if (patches) {
+        mesh_add_bilinear(m, corner);
+        continue;
       }
       mesh_add_triangle(m, corner[0], corner[1], corner[3]);
       mesh_add_triangle(m, corner[0], corner[3], corner[2]);

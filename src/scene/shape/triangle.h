@@ -79,9 +79,10 @@ static inline void triangle_gather(const struct scene *scene, const struct shape
     for (int k = 0; k < 3; k++) vertex[i][k] = scene->position[row[i]][k];
 }
 
-// Whether the ray leaves a triangle that has `vertex` wholly in its plane or behind it: each vertex
-// is one of its own or not on the side the ray goes to. Exactly, such a ray never meets it at t >
-// 0; rounded, a neighbour in the same plane would shadow a point on the edge they share.
+// Whether the ray leaves a triangle or plane patch that has `vertex` wholly in its plane or behind
+// it: each vertex is one of its own or not on the side the ray goes to. Exactly, such a ray never
+// meets it at t > 0; rounded, a neighbour in the same plane would shadow a point on the edge they
+// share.
 bool triangle_is_left_behind(const struct scene *, const struct ray *, const float vertex[3][3]);
 
 // What every shape made of triangles does (scene/intersect.c, scene/triangle_mesh.c); the tree
