@@ -23,7 +23,7 @@ struct photon_map *photon_map_new(const struct measurement *measure, struct aren
 void photon_map_see(struct photon_map *map, uint64_t i) {
   const struct measurement *measure = map->measure;
   map->walk->key = rng_key(measure->seed, map->run, RNG_EYE);
-  map->walk->iteration = i;
+  walk_begin(map->walk, measure->seed, map->run, i);
   eye_trace(map->walk, measure->pixel, measure->n_points, measure->footprint, measure->depth,
             map->point);
 }
@@ -45,7 +45,7 @@ void photon_map_emit(struct photon_map *map, uint64_t i, double r) {
   struct photon_filter filter = {grid_seen_keep, &map->seen};
   bool few = mark_seen(map, r);
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
-  map->walk->iteration = i;
+  walk_begin(map->walk, measure->seed, map->run, i);
   photons_trace(map->walk, &pass, few ? &filter : NULL, &map->photons, map->arena);
   grid_build(&map->grid, &map->photons, r, map->arena);
 }
@@ -95,7 +95,7 @@ static void add_direct(struct photon_map *map, uint64_t i, double *frame) {
   long stride = (long)measure->n_points * measure->features.n_channels;
   memset(map->direct, 0, (size_t)stride * sizeof *map->direct);
   map->walk->key = rng_key(measure->seed, map->run, RNG_EYE);
-  map->walk->iteration = i;
+  walk_begin(map->walk, measure->seed, map->run, i);
   for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
     int left = measure->n_points - first;
     connect_points(map, first, left < WALK_BATCH ? left : WALK_BATCH);

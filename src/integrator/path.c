@@ -118,7 +118,7 @@ static void path_step(void *data, uint64_t i, double *frame) {
   long size = (long)measure->n_points * walk->n_channels;
   memset(frame, 0, (size_t)size * sizeof *frame);
   walk->key = rng_key(measure->seed, state->run, RNG_EYE);
-  walk->iteration = i;
+  walk_begin(walk, measure->seed, state->run, i);
   for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
     int n = measure->n_points - first < WALK_BATCH ? measure->n_points - first : WALK_BATCH;
     for (int j = 0; j < n; j++) walk->path[j] = path_number(measure, first + j);

@@ -87,6 +87,8 @@ static void fill_tables(struct scene_builder *builder) {
       scene->bounds = box_union(scene->bounds, shape->type->bounds(scene, shape, k));
     }
   }
+  for (uint32_t k = 0; k < scene->n_motions; k++)
+    scene->bounds = box_union(scene->bounds, scene->motion[k].bounds);
 }
 
 static bool read_light(struct reader *reader, struct pending_light *pending, struct light *light) {

@@ -36,7 +36,7 @@ struct features scene_features(const struct scene *scene) {
       .n_channels = gray ? 1 : 3,
       .random_materials = needs & MATERIAL_RANDOM,
       .see_through = any_see_through(scene),
-      .motion = scene->n_motions > 0 || scene->camera.moves,
+      .motion = scene->n_motions > 0 || scene->camera.animation.moves,
       .background = scene->n_infinite > 0,
   };
   features.random_eye = features.motion || features.see_through ||

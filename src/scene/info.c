@@ -17,7 +17,7 @@ static void print_camera(const struct scene *scene, FILE *out) {
     fprintf(out, ", fov %g degrees (shorter axis)", camera->fov);
   if (camera->lens_radius > 0)
     fprintf(out, ", lens of radius %g focused at %g", camera->lens_radius, camera->focal_distance);
-  fprintf(out, "%s\n", camera->moves ? ", moves" : "");
+  fprintf(out, "%s\n", camera->animation.moves ? ", moves" : "");
   fprintf(out, "  eye        %g %g %g\n", axis.o.x, axis.o.y, axis.o.z);
   fprintf(out, "  towards    %g %g %g\n", axis.d.x, axis.d.y, axis.d.z);
   const char *filename = scene->settings.filename;

@@ -21,8 +21,6 @@ struct scene_builder {
   struct arena *arena;
   struct scene *scene;                // under construction; complete (with bounds) when lights are read
   struct transform world_from_object; // the current transformation at the directive
-  struct transform world_from_object_end; // at the end of the motion
-  bool moves;                         // the two differ
   bool reverse_orientation;           // at the directive
   bool mirrored_instance;             // the shape is part of an ObjectInstance that mirrors
   bool emits;                         // shapes: an area light comes with this one

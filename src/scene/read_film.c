@@ -72,9 +72,8 @@ static void place_camera(struct reader *reader, struct camera *camera) {
   for (int end = START; end < N_ENDS; end++)
     transform_invert(reader->now.world_from_object[end], &world_from_camera[end]);
   read_name_coordinate_system(reader, "camera", world_from_camera);
-  camera->moves = read_is_moving(&reader->now);
-  camera->start = camera->world_from_camera = world_from_camera[START];
-  camera->end = world_from_camera[END];
+  camera->animation = animation_new(world_from_camera[START], world_from_camera[END]);
+  camera->world_from_camera = world_from_camera[START];
 }
 
 bool read_camera(struct reader *reader, struct call *call) {

@@ -54,9 +54,15 @@ static bool place_shape(struct reader *reader, const struct instance *instance,
   struct attributes attributes = shape->attributes;
   struct params params = shape->params;
   uint32_t row;
-  if (instance && !compose(reader, instance, &attributes)) return false;
   for (int i = 0; i < params.count; i++)
     params.item[i].taken = false; // there may be many instances
+  if (read_is_moving(&attributes) || (instance && read_is_moving(&instance->attributes))) {
+    const struct transform none[N_ENDS] = {transform_identity(), transform_identity()};
+    return read_place_moving_shape(reader, shape->type, &attributes,
+                                   instance ? instance->attributes.world_from_object : none,
+                                   &params);
+  }
+  if (instance && !compose(reader, instance, &attributes)) return false;
   reader->builder.mirrored_instance =
       instance && transform_determinant(instance->attributes.world_from_object[START]) < 0;
   bool ok = read_place_shape(reader, shape->type, &attributes, &params, &row);

@@ -1,5 +1,6 @@
 // Directives after WorldBegin: shapes and lights.
 #include "scene/build.h"
+#include "scene/motion.h"
 #include "scene/reader.h"
 
 #include <string.h>
@@ -56,27 +57,51 @@ static void read_alpha(struct reader *reader, struct params *params, struct shap
 
 static void set_builder(struct scene_builder *builder, const struct attributes *attributes) {
   builder->world_from_object = attributes->world_from_object[START];
-  builder->world_from_object_end = attributes->world_from_object[END];
-  builder->moves = read_is_moving(attributes);
   builder->reverse_orientation = attributes->reverse_orientation;
   builder->emits = attributes->area_light != NULL;
+}
+
+static bool read_one_shape(struct reader *reader, const struct shape_type *type, bool flip,
+                           const struct attributes *attributes, struct params *params) {
+  struct scene_builder *builder = &reader->builder;
+  if (!read_check_media(reader, attributes, params)) return false;
+  uint32_t row = build_begin_shape(builder, type, attributes->material, flip);
+  read_alpha(reader, params, &builder->scene->shape[row]);
+  read_leave_out(reader, params, "displacement");
+  read_leave_out(reader, params, "displacement.edgelength");
+  return type->read(builder, params) && params_finish(params);
 }
 
 bool read_place_shape(struct reader *reader, const struct shape_type *type,
                       const struct attributes *attributes, struct params *params, uint32_t *row) {
   struct scene_builder *builder = &reader->builder;
+  *row = builder->scene->n_shapes;
   set_builder(builder, attributes);
-  if (builder->moves)
-    return problem_at(reader->problem, params->place, "%s: motion is not in this version",
-                      params->directive);
-  if (!read_check_media(reader, attributes, params)) return false;
   bool mirrored = transform_determinant(builder->world_from_object) < 0;
-  *row = build_begin_shape(builder, type, attributes->material,
-                           attributes->reverse_orientation != mirrored);
-  read_alpha(reader, params, &builder->scene->shape[*row]);
-  read_leave_out(reader, params, "displacement");
-  read_leave_out(reader, params, "displacement.edgelength");
-  return type->read(builder, params) && params_finish(params);
+  return read_one_shape(reader, type, attributes->reverse_orientation != mirrored, attributes,
+                        params);
+}
+
+// Where it is at the start of the motion, which its own matrix and its instance's make.
+bool read_place_moving_shape(struct reader *reader, const struct shape_type *type,
+                             const struct attributes *attributes,
+                             const struct transform instance[N_ENDS], struct params *params) {
+  struct scene_builder *builder = &reader->builder;
+  const struct transform *object = attributes->world_from_object;
+  struct motion_place place = {animation_new(instance[START], instance[END]),
+                               animation_new(object[START], object[END])};
+  bool mirrored = transform_determinant(object[START]) < 0,
+       mirrors = transform_determinant(instance[START]) < 0;
+  set_builder(builder, attributes);
+  builder->world_from_object = transform_identity(); // motion_add does the rest
+  // To pbrt a matrix that moves mirrors a quadric's normals as an instance's does.
+  builder->mirrored_instance = mirrors != (place.object.moves && mirrored);
+  struct motion_start start = motion_start(builder->scene);
+  bool ok = read_one_shape(reader, type, attributes->reverse_orientation != (mirrored != mirrors),
+                           attributes, params) &&
+            motion_add(builder, params, &start, &place);
+  builder->mirrored_instance = false;
+  return ok;
 }
 
 // A definition's shapes wait for the instances.
@@ -100,6 +125,10 @@ bool read_shape(struct reader *reader, struct call *call) {
   if (now->area_light && read_is_moving(now))
     return problem_at(reader->problem, call->place, "%s: an area light cannot move",
                       call->params.directive);
+  if (read_is_moving(now)) {
+    const struct transform none[N_ENDS] = {transform_identity(), transform_identity()};
+    return read_place_moving_shape(reader, type, now, none, &call->params);
+  }
   if (!read_place_shape(reader, type, now, &call->params, &row)) return false;
   for (; now->area_light && row < reader->builder.scene->n_shapes; row++) // a mesh may be two
     add_pending_light(reader, now->area_light->type, &now->area_light->params, row);

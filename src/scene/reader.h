@@ -259,6 +259,9 @@ void read_name_coordinate_system(struct reader *, const char *name,
 // Adds a shape's primitives to the scene, with the attributes it had in the file.
 bool read_place_shape(struct reader *, const struct shape_type *, const struct attributes *,
                       struct params *, uint32_t *row);
+// The same for one that moves: instance(time) * its own(time).
+bool read_place_moving_shape(struct reader *, const struct shape_type *, const struct attributes *,
+                             const struct transform instance[N_ENDS], struct params *);
 // Adds the primitives of every ObjectInstance.
 bool read_instances(struct reader *);
 

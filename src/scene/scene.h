@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/problem.h"
 #include "pbrt/params.h"
+#include "scene/animation.h"
 #include "scene/bsdf.h"
 #include "scene/ray.h"
 #include "scene/texture.h"
@@ -63,12 +64,14 @@ struct quadric {
   double phi_max;              // radians
 };
 
-// A shape that moves: world from object is interpolated between start and end as pbrt's
-// AnimatedTransform does, and scene.position, normal or quadric hold it at one time.
+// A shape that moves: its point p is at instance * object * p, and scene.position, normal or quadric
+// hold it at one time (scene/motion.h). Outside of instances the first is the identity.
 struct motion {
-  uint32_t shape;
-  struct transform start, end;
-  float (*position)[3], (*normal)[3]; // meshes: in object space, or NULL
+  uint32_t shape, n_shapes;           // a mesh may be two, which share its vertices
+  struct animation instance, object;
+  uint32_t n_vertices, n_normals;     // meshes
+  float (*position)[3], (*normal)[3]; // before both transformations; NULL if there are none
+  struct box bounds;                  // at all times
 };
 
 struct scene_builder; // the reader's state while a file is read (scene/read.h)
@@ -185,8 +188,7 @@ struct pixel {
 struct camera {
   const struct camera_type *type;
   struct transform world_from_camera;
-  struct transform start, end;        // of world_from_camera, where it moves
-  bool moves;
+  struct animation animation;         // of world_from_camera
   int width, height;                  // of the image, pixels
   int full_width, full_height;        // of the film it is cut from
   int crop_x, crop_y;                 // where the image's top left pixel is on the film

@@ -29,8 +29,9 @@ static struct crossing crossing_new(struct arena *arena) {
 struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct features features,
                       struct arena *arena) {
   struct walk *walk = arena_new(arena, struct walk, 1);
-  walk->scene = scene;
-  walk->bvh = bvh;
+  walk->view = view_new(scene, bvh, arena);
+  walk->scene = walk->view.scene;
+  walk->bvh = walk->view.bvh;
   walk->features = features;
   walk->n_channels = features.n_channels;
   walk->path = arena_new(arena, uint64_t, WALK_BATCH);
@@ -46,6 +47,15 @@ struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct f
   walk->shadow = shadow_new(walk->n_channels, arena);
   if (features.see_through) walk->crossing = crossing_new(arena);
   return walk;
+}
+
+void walk_begin(struct walk *walk, uint64_t seed, uint64_t run, uint64_t i) {
+  walk->iteration = i;
+  if (!walk->features.motion) return;
+  const uint64_t path = 0;
+  double time, unused;
+  rng_fill(rng_key(seed, run, RNG_TIME), i, &path, 1, 0, &time, &unused);
+  view_set(&walk->view, time);
 }
 
 void walk_random(struct walk *walk, int slot, uint32_t pair) {

@@ -4,15 +4,16 @@
 #ifndef WALK_WALK_H
 #define WALK_WALK_H
 
-#include "bvh/bvh.h"
+#include "bvh/view.h"
 #include "numeric/rng.h"
 #include "scene/scene.h"
 
 enum { WALK_BATCH = 4096 };
 
 struct walk {
-  const struct scene *scene;
+  const struct scene *scene; // of this iteration, as the tree
   const struct bvh *bvh;
+  struct view view;
   struct features features;
   int n_channels;
   enum transport transport; // photons: importance
@@ -53,6 +54,9 @@ struct walk {
 };
 
 struct walk *walk_new(const struct scene *, const struct bvh *, struct features, struct arena *);
+
+// Begins iteration i of a run: where things move, at its time, which eye and photon paths share.
+void walk_begin(struct walk *, uint64_t seed, uint64_t run, uint64_t i);
 
 // The pairs of random numbers of all paths alive: u[slot][0..1][j].
 void walk_random(struct walk *, int slot, uint32_t pair);

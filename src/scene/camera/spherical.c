@@ -1,7 +1,6 @@
 // Camera "spherical": all directions from a point, +y up. `string mapping` ["equalarea"]: of the
-// square film (Clarberg 2008, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD"), or
-// "equirectangular": longitude and latitude.
-#include "numeric/elementary.h"
+// square film (scene/octahedral.h), or "equirectangular": longitude and latitude.
+#include "scene/octahedral.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -36,17 +35,10 @@ static void wrap(double *across, double *along) {
   *along = 1 - *along;
 }
 
-// Each quarter of the square is a triangle of the octahedron and its mirror image: r = |u| + |v| in
-// [-1, 1]^2 up to the diagonal is the sphere's upper half.
 static struct vec equal_area(double s, double t) {
   wrap(&s, &t);
   wrap(&t, &s);
-  double u = 2 * s - 1, v = 2 * t - 1, above = 1 - (fabs(u) + fabs(v)), r = 1 - fabs(above);
-  double turns = r == 0 ? 0.125 : ((fabs(v) - fabs(u)) / r + 1) / 8, sine, cosine;
-  num_sincos_turns(turns, &sine, &cosine);
-  double rho = r * sqrt(2 - r * r), z = 1 - r * r;
-  return vec(u < 0 ? -cosine * rho : cosine * rho, v < 0 ? -sine * rho : sine * rho,
-             above < 0 ? -z : z);
+  return octahedral_direction(s, t);
 }
 
 static struct ray ray(const struct camera *camera, double x, double y) {
