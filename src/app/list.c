@@ -42,6 +42,11 @@ static void list_lights(void) {
     printf("  %-15s %s\n", light_types[k]->name, light_types[k]->about);
 }
 
+static void list_textures(void) {
+  for (int k = 0; texture_types[k]; k++)
+    printf("  %-15s %s\n", texture_types[k]->name, texture_types[k]->about);
+}
+
 static void list_cameras(void) {
   for (int k = 0; camera_types[k]; k++)
     printf("  %-15s %s\n", camera_types[k]->name, camera_types[k]->about);
@@ -78,6 +83,7 @@ static const struct {
     {"shapes", "of scene files", list_shapes},
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},
+    {"textures", "of scene files", list_textures},
     {"cameras", "of scene files", list_cameras},
     {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
     {"skips", "what is left out where a scene does not need it", list_skips},
@@ -123,8 +129,7 @@ const struct command command_list = {"list", "[WHAT]", "what is registered: laws
                                      list};
 
 const struct command command_info = {
-    "info", "SCENE", "what a scene holds and which features it lets us skip", "lenient",
-    info};
+    "info", "SCENE", "what a scene holds and which features it lets us skip", "lenient", info};
 
 const struct command command_validate = {
     "validate", NULL, "checks radius laws, kernels and functions against theory's values", "",

@@ -130,6 +130,30 @@ static void scale_invert_and_channels(void **state) {
   assert_near(value.x, 11, 20);
 }
 
+// pbrt multiplies an image's own scale by a constant factor: what is inverted is the product.
+static void a_constant_factor_comes_before_invert(void **state) {
+  (void)state;
+  make_texture(&world, "half", false, "constant", "\"float value\" .5");
+  static const char inverted[] = "\"string filename\" \"colour.tga\" \"bool invert\" true";
+  double g = srgb(100), mean = (srgb(200) + g + srgb(50)) / 3;
+  make_texture(&world, "dark", true, "imagemap", inverted);
+  make_texture(&world, "dark", false, "imagemap", inverted);
+  static const char *const by[] = {"\"texture tex\" \"dark\" \"float scale\" .5",
+                                   "\"texture tex\" \"dark\" \"texture scale\" \"half\"",
+                                   "\"texture scale\" \"dark\" \"float tex\" .5"};
+  for (int k = 0; k < 2; k++)
+    assert_near(texture_at_uv(make_texture(&world, "s", true, "scale", by[k]), 0.25, 0.5).y,
+                1 - 0.5 * g, 1);
+  for (int k = 0; k < 3; k++)
+    assert_near(texture_at_uv(make_texture(&world, "s", false, "scale", by[k]), 0.25, 0.5).x,
+                1 - 0.5 * mean, 1);
+  // Not constant: what is inverted is the image alone.
+  make_texture(&world, "board", false, "checkerboard", "\"float tex1\" .5");
+  struct texture texture = make_texture(&world, "s", true, "scale",
+                                        "\"texture tex\" \"dark\" \"texture scale\" \"board\"");
+  assert_near(texture_at_uv(texture, 0.25, 0.5).y, 0.5 * (1 - g), 1);
+}
+
 static void gray_is_said_of_all_texels(void **state) {
   (void)state;
   static const struct {
@@ -190,6 +214,7 @@ int main(void) {
       cmocka_unit_test(lookups_are_bilinear_or_nearest),
       cmocka_unit_test(wrapping_repeats_clamps_blackens_and_folds),
       cmocka_unit_test(scale_invert_and_channels),
+      cmocka_unit_test(a_constant_factor_comes_before_invert),
       cmocka_unit_test(gray_is_said_of_all_texels),
       cmocka_unit_test(a_file_is_read_once_and_counts_in_the_hash),
       cmocka_unit_test(what_cannot_be_is_refused_with_its_place),

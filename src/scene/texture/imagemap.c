@@ -2,6 +2,7 @@
 // finest level, bilinear ("point": the nearest texel); pbrt blurs it over a pixel's footprint.
 // Floats of an image with colours are their mean ("point": red), of one with alpha its alpha, as in
 // pbrt.
+#include "scene/texture/imagemap.h"
 #include "scene/mapping.h"
 #include "scene/resize.h"
 #include "scene/texture/inputs.h"
@@ -19,7 +20,15 @@ struct imagemap {
   bool invert, point, spectrum, gray;
 };
 
-extern const struct texture_type texture_imagemap;
+const struct texture *imagemap_scaled(const struct texture *texture, double factor,
+                                      struct arena *arena) {
+  struct imagemap *map = arena_new(arena, struct imagemap, 1);
+  struct texture *scaled = arena_new(arena, struct texture, 1);
+  *map = *(const struct imagemap *)texture->data;
+  map->scale *= factor;
+  *scaled = (struct texture){texture->type, map};
+  return scaled;
+}
 
 // ---- looking up ----
 

@@ -1,15 +1,34 @@
-// Texture "scale": `tex` [1] times the float `scale` [1].
+// Texture "scale": `tex` [1] times the float `scale` [1]. As in pbrt a constant factor of an image
+// becomes part of the image's own `scale`, which comes before its `invert`.
+#include "scene/texture/imagemap.h"
 #include "scene/texture/inputs.h"
 
 struct scale {
   struct input tex, scale;
 };
 
+static bool is_constant(const struct input *input) {
+  return !input->texture || input->texture->type == &texture_constant;
+}
+
+static bool is_image(const struct input *input) {
+  return input->texture && input->texture->type == &texture_imagemap;
+}
+
+static void fold(struct input *image, struct input *factor, struct arena *arena) {
+  if (!is_image(image) || !is_constant(factor)) return;
+  double value = input_float(factor, &(struct surface){.uv = {0, 0}});
+  image->texture = imagemap_scaled(image->texture, value, arena);
+  *factor = (struct input){.value = {1, 1, 1}};
+}
+
 static bool read(struct scene_builder *builder, struct params *params, bool spectrum,
                  struct texture *texture) {
   struct scale *scale = arena_new(builder->arena, struct scale, 1);
   scale->tex = texture_input(builder, params, spectrum, "tex", 1);
   scale->scale = input_read_float(builder, params, "scale", 1);
+  fold(&scale->tex, &scale->scale, builder->arena);
+  if (!spectrum) fold(&scale->scale, &scale->tex, builder->arena);
   texture->data = scale;
   return params_finish(params);
 }
