@@ -20,6 +20,18 @@ static const char *const seeds[] = {
     "LightSource \"point\" \"rgb I\" [1 2 3] \"point3 from\" [0 5 0] \"float power\" 10\n"
     "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n"
     "Shape \"sphere\" \"float radius\" 1.5e0 \"float zmin\" -1 \"float zmax\" .75\n",
+    "Option \"seed\" 17 CoordinateSystem \"a\" TransformTimes 0 1 WorldBegin CoordSysTransform "
+    "\"a\"\n"
+    "Attribute \"shape\" \"float radius\" 2 \"float alpha\" .5 ActiveTransform All ObjectBegin "
+    "\"b\"\n"
+    "NamedMaterial \"late\" Translate 1 2 3 Shape \"sphere\" \"float radius\" [.75] Shape "
+    "\"disk\"\n"
+    "ObjectEnd Scale -1 1 1 ObjectInstance \"b\" TransformBegin ObjectInstance \"b\" TransformEnd\n"
+    "Texture \"t\" \"float\" \"constant\" \"float value\" .25 MediumInterface \"\" \"\" Shape "
+    "\"disk\"\n"
+    "MakeNamedMaterial \"late\" \"string type\" \"diffuse\" Shape \"disk\" \"texture alpha\" "
+    "\"t\"\n"
+    "LightSource \"point\"\n",
 };
 
 // What an edit may put in: bytes alone rarely make a different token.
@@ -47,6 +59,9 @@ static const char *const pieces[] = {
     " ",
     "AttributeEnd ",
     "AttributeBegin ",
+    "ObjectBegin \"a\" ",
+    "ObjectEnd ",
+    "ActiveTransform EndTime ",
     "4294967296",
     "Shape \"sphere\" ",
     "\"integer indices\" [",
@@ -151,6 +166,10 @@ static void long_files_take_time_in_proportion(void **state) {
       {"WorldBegin AreaLightSource \"diffuse\" ", "Shape \"disk\" ", ""},
       {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [", "1 ", "]"},
       {"WorldBegin Shape \"sphere\" \"float radius\" ", "1", ""},
+      {"WorldBegin ", "Attribute \"shape\" \"float radius\" 1 ", "Shape \"sphere\""},
+      {"WorldBegin ObjectBegin \"a\" Shape \"disk\" ObjectEnd ", "ObjectInstance \"a\" ", ""},
+      {"WorldBegin ", "CoordinateSystem \"a\" CoordSysTransform \"a\" ", ""},
+      {"WorldBegin ", "NamedMaterial \"a\" Shape \"disk\" ", ""},
       {"", "#\n", ""},
       {"", "[", ""},
       {"", "\"", ""},
@@ -170,11 +189,33 @@ static void long_files_take_time_in_proportion(void **state) {
   }
 }
 
+// Tens of thousands of names, each found at once.
+static void many_names_take_time_in_proportion(void **state) {
+  (void)state;
+  enum { N_NAMES = 20000, LONGEST = 192 };
+  static char text[N_NAMES * LONGEST + 64];
+  char *at = text + sprintf(text, "WorldBegin ");
+  for (int k = 0; k < N_NAMES; k++)
+    at += sprintf(at,
+                  "ObjectBegin \"o%d\" ObjectEnd ObjectInstance \"o%d\" NamedMaterial \"m%d\" "
+                  "CoordinateSystem \"c%d\"\n",
+                  k, N_NAMES - k - 1, k, k);
+  for (int k = 0; k < N_NAMES; k++) at += sprintf(at, "CoordSysTransform \"c%d\" ", k);
+  struct scene scene;
+  struct problem problem;
+  clock_t start = clock();
+  assert_false(scene_of_bytes(text, at - text, &scene, &problem));
+  assert_non_null(strstr(problem.text, "unknown material \"m0\""));
+  double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+  if (seconds > 5) fail_msg("%g s of processor time", seconds);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mutated_scenes_are_read_or_refused),
       cmocka_unit_test(prefixes_of_a_scene_are_read_or_refused),
       cmocka_unit_test(long_files_take_time_in_proportion),
+      cmocka_unit_test(many_names_take_time_in_proportion),
   };
   return cmocka_run_group_tests_name("scene_fuzz", tests, NULL, NULL);
 }
