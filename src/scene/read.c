@@ -26,18 +26,18 @@ static const struct directive directives[] = {
     {"Option", ANYWHERE, NAME_VALUE, .run = read_option},
     {"Include", ANYWHERE, NAME, .run = read_include},
     {"Import", IN_WORLD, NAME, .run = read_import},
-    {"Camera", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_camera},
-    {"Film", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_film},
+    {"Camera", BEFORE_WORLD, PARAMETERS, .keep = true, .run = read_camera},
+    {"Film", BEFORE_WORLD, PARAMETERS, .keep = true, .run = read_film},
     {"PixelFilter", BEFORE_WORLD, PARAMETERS, .run = read_pixel_filter},
     {"Sampler", BEFORE_WORLD, PARAMETERS, .run = read_sampler},
     {"Accelerator", BEFORE_WORLD, PARAMETERS, .run = read_accelerator},
-    {"Integrator", BEFORE_WORLD, PARAMETERS, .lifetime = WITH_SCENE, .run = read_integrator},
+    {"Integrator", BEFORE_WORLD, PARAMETERS, .keep = true, .run = read_integrator},
     {"WorldBegin", BEFORE_WORLD, BARE, .run = read_world_begin},
     {"AttributeBegin", IN_WORLD, BARE, .run = read_attribute_begin},
     {"AttributeEnd", IN_WORLD, BARE, .run = read_attribute_end},
     {"TransformBegin", IN_WORLD, BARE, .run = read_attribute_begin},
     {"TransformEnd", IN_WORLD, BARE, .run = read_attribute_end},
-    {"Attribute", ANYWHERE, PARAMETERS, .lifetime = WITH_SCENE, .run = read_attribute},
+    {"Attribute", ANYWHERE, PARAMETERS, .keep = true, .run = read_attribute},
     {"ObjectBegin", IN_WORLD, NAME, .run = read_object_begin},
     {"ObjectEnd", IN_WORLD, BARE, .run = read_object_end},
     {"ObjectInstance", IN_WORLD, NAME, .run = read_object_instance},
@@ -49,8 +49,8 @@ static const struct directive directives[] = {
     {"Texture", IN_WORLD, TEXTURE, .target = FOR_TEXTURE, .run = read_texture},
     {"MakeNamedMedium", ANYWHERE, PARAMETERS, .target = FOR_MEDIUM, .run = read_make_named_medium},
     {"MediumInterface", ANYWHERE, NAMES, .run = read_medium_interface},
-    {"LightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_light_source},
-    {"AreaLightSource", IN_WORLD, PARAMETERS, 0, WITH_SCENE, FOR_LIGHT, read_area_light_source},
+    {"LightSource", IN_WORLD, PARAMETERS, 0, true, FOR_LIGHT, read_light_source},
+    {"AreaLightSource", IN_WORLD, PARAMETERS, 0, true, FOR_LIGHT, read_area_light_source},
 };
 enum { N_DIRECTIVES = (int)(sizeof directives / sizeof *directives) };
 
@@ -96,10 +96,9 @@ static bool check_where(struct reader *reader, const struct directive *directive
 }
 
 // What an object's definition needs waits for the instances.
-static struct arena *arena_for(struct reader *reader, enum lifetime lifetime,
-                               struct arena *scratch) {
-  if (lifetime == WITH_SCENE) return reader->builder.arena;
-  return lifetime == WITH_READER || reader->in_object ? &reader->lists : scratch;
+static struct arena *arena_for(struct reader *reader, bool keep, struct arena *scratch) {
+  if (keep) return reader->builder.arena;
+  return reader->in_object ? &reader->lists : scratch;
 }
 
 static bool read_directive(struct reader *reader, struct arena scratch) {
@@ -107,7 +106,7 @@ static bool read_directive(struct reader *reader, struct arena scratch) {
   struct call call = {.place = reader->lexer.token.place};
   if (!directive || !check_where(reader, directive, call.place)) return false;
   call.name = directive->name;
-  struct arena *arena = arena_for(reader, directive->lifetime, &scratch);
+  struct arena *arena = arena_for(reader, directive->keep, &scratch);
   if (!read_parse_call(reader, directive, arena, &call)) return false;
   call.scratch = scratch;
   return directive->run(reader, &call);

@@ -31,8 +31,10 @@ bool read_object_instance(struct reader *reader, struct call *call) {
                       "ObjectInstance within an object's definition is not possible; repeat its "
                       "shapes");
   const char *name = arena_string(&reader->lists, call->type, (ptrdiff_t)strlen(call->type));
-  *arena_push(&reader->lists, &reader->instances) =
-      (struct instance){name, call->place, call->type_place, reader->now};
+  struct instance instance = {.name = name, .place = call->place, .name_place = call->type_place};
+  memcpy(instance.world_from_object, reader->now.world_from_object,
+         sizeof instance.world_from_object);
+  *arena_push(&reader->lists, &reader->instances) = instance;
   return true;
 }
 
@@ -41,7 +43,7 @@ static bool compose(struct reader *reader, const struct instance *instance,
                     struct attributes *shape) {
   for (int end = START; end < N_ENDS; end++) {
     struct transform *t = &shape->world_from_object[end], inverse;
-    *t = transform_multiply(instance->attributes.world_from_object[end], *t);
+    *t = transform_multiply(instance->world_from_object[end], *t);
     if (!transform_is_finite(t) || !transform_invert(*t, &inverse))
       return problem_at(reader->problem, instance->place,
                         "ObjectInstance: the transformation overflows or flattens space");
@@ -56,15 +58,15 @@ static bool place_shape(struct reader *reader, const struct instance *instance,
   uint32_t row;
   for (int i = 0; i < params.count; i++)
     params.item[i].taken = false; // there may be many instances
-  if (read_is_moving(&attributes) || (instance && read_is_moving(&instance->attributes))) {
+  if (read_is_moving(attributes.world_from_object) ||
+      (instance && read_is_moving(instance->world_from_object))) {
     const struct transform none[N_ENDS] = {transform_identity(), transform_identity()};
     return read_place_moving_shape(reader, shape->type, &attributes,
-                                   instance ? instance->attributes.world_from_object : none,
-                                   &params);
+                                   instance ? instance->world_from_object : none, &params);
   }
   if (instance && !compose(reader, instance, &attributes)) return false;
   reader->builder.mirrored_instance =
-      instance && transform_determinant(instance->attributes.world_from_object[START]) < 0;
+      instance && transform_determinant(instance->world_from_object[START]) < 0;
   bool ok = read_place_shape(reader, shape->type, &attributes, &params, &row);
   reader->builder.mirrored_instance = false;
   return ok;

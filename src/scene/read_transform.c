@@ -106,8 +106,7 @@ bool read_transform_times(struct reader *reader, struct call *call) {
   return true;
 }
 
-bool read_is_moving(const struct attributes *attributes) {
-  const struct transform *t = attributes->world_from_object;
+bool read_is_moving(const struct transform t[N_ENDS]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++)
       if (t[START].m[i][j] != t[END].m[i][j]) return true;

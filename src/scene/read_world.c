@@ -122,10 +122,10 @@ bool read_shape(struct reader *reader, struct call *call) {
   uint32_t row;
   if (!type) return false;
   if (reader->in_object) return add_to_object(reader, type, call);
-  if (now->area_light && read_is_moving(now))
+  if (now->area_light && read_is_moving(now->world_from_object))
     return problem_at(reader->problem, call->place, "%s: an area light cannot move",
                       call->params.directive);
-  if (read_is_moving(now)) {
+  if (read_is_moving(now->world_from_object)) {
     const struct transform none[N_ENDS] = {transform_identity(), transform_identity()};
     return read_place_moving_shape(reader, type, now, none, &call->params);
   }

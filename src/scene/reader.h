@@ -1,5 +1,5 @@
 // The reader's inside: a scene file is a sequence of directives (read.c); each is a row of
-// directives[] whose function (read_transform.c, read_options.c, read_world.c) changes the state.
+// directives[] whose function (in the other files read_*.c) changes the state.
 #ifndef SCENE_READER_H
 #define SCENE_READER_H
 
@@ -67,7 +67,7 @@ struct object {
 struct instance {
   const char *name;
   struct place place, name_place;
-  struct attributes attributes;
+  struct transform world_from_object[N_ENDS];
 };
 
 // A material named so far, made or not.
@@ -126,11 +126,11 @@ struct reader {
     struct pending_light *item;
     ptrdiff_t count, capacity;
   } lights;
-  struct place world_begin;                                            // line 0: not yet
-  struct place camera, film, sampler, integrator, filter, color_space; // line 0: not given
-  const double *screen_window;                                         // Camera's, or NULL
-  double iso;                                                          // Film's
-  double frame_aspect_ratio;                                           // 0: not given
+  struct place world_begin;                               // line 0: not yet
+  struct place camera, film, sampler, integrator, filter; // line 0: not given
+  const double *screen_window;                            // Camera's, or NULL
+  double iso;                                             // Film's
+  double frame_aspect_ratio;                              // 0: not given
   double transform_times[N_ENDS];
   int64_t sampler_seed, option_seed; // -1: not given
   bool no_pixel_jitter;              // Option
@@ -157,15 +157,12 @@ struct call {
   struct arena scratch; // free while the directive runs
 };
 
-// How long a directive's parameters are needed.
-enum lifetime { WHILE_READ, WITH_READER, WITH_SCENE };
-
 struct directive {
   const char *name;
   enum { ANYWHERE, BEFORE_WORLD, IN_WORLD } where;
   enum { BARE, NUMBERS, MATRIX, WORD, NAME, NAMES, NAME_VALUE, PARAMETERS, TEXTURE } form;
   int n_numbers;
-  enum lifetime lifetime;
+  bool keep;          // the scene may point to its parameters
   enum target target; // whose defaults apply
   bool (*run)(struct reader *, struct call *);
 };
@@ -252,7 +249,7 @@ bool read_unknown_type(struct reader *, const struct call *, const char *const *
 // Whether every material that was named was made.
 bool read_check_materials(struct reader *);
 
-bool read_is_moving(const struct attributes *);
+bool read_is_moving(const struct transform world_from_object[N_ENDS]);
 void read_name_coordinate_system(struct reader *, const char *name,
                                  const struct transform world_from_object[N_ENDS]);
 
