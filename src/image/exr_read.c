@@ -2,6 +2,8 @@
 // 32-bit floats.
 #include "image/exr.h"
 
+#include "base/exact.h"
+
 static int64_t bytes_read(exr_const_context_t file, void *text, void *to, uint64_t n,
                           uint64_t offset, exr_stream_error_func_ptr_t error) {
   (void)file, (void)error;
@@ -59,6 +61,24 @@ static bool check_kind(exr_context_t file, const char *path, struct outline *out
   return true;
 }
 
+// The spaces other than sRGB that pbrt knows; what it does not know it takes for sRGB, and so do
+// we.
+static bool check_primaries(exr_context_t file, const char *path, struct problem *problem) {
+  static const struct {
+    const char *name;
+    double red[2];
+  } other[] = {
+      {"DCI-P3", {.68, .32}}, {"Rec. 2020", {.708, .292}}, {"ACES 2065-1", {.7347, .2653}}};
+  exr_attr_chromaticities_t of;
+  if (exr_attr_get_chromaticities(file, 0, "chromaticities", &of)) return true;
+  for (size_t k = 0; k < sizeof other / sizeof *other; k++)
+    if (fabs(of.red_x - other[k].red[0]) < 1e-3 * other[k].red[0] &&
+        fabs(of.red_y - other[k].red[1]) < 1e-3 * other[k].red[1])
+      return problem_set(problem, "%s: has the primaries of %s; convert it to sRGB", path,
+                         other[k].name);
+  return true;
+}
+
 static bool check_channels(const exr_attr_chlist_t *channels, const char *path,
                            struct problem *problem) {
   if (channels->num_channels < 1 || channels->num_channels > IMAGE_MAX_CHANNELS)
@@ -99,7 +119,8 @@ static bool check_length(exr_context_t file, const struct outline *outline, ptrd
 
 static bool read_outline(exr_context_t file, const char *path, ptrdiff_t length,
                          struct outline *outline, struct problem *problem) {
-  if (!check_kind(file, path, outline, problem)) return false;
+  if (!check_kind(file, path, outline, problem) || !check_primaries(file, path, problem))
+    return false;
   exr_result_t code = exr_get_channels(file, 0, &outline->channels);
   if (code) return exr_complain(problem, path, "has no channels", code);
   if (!check_channels(outline->channels, path, problem) ||

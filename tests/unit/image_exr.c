@@ -27,9 +27,10 @@ struct kind {
   int parts, sampling;
   int top, bottom; // rows of the data window; the display window is 0 to HEIGHT - 1
   bool levels;     // tiles of all resolutions
+  float red[2];    // primary; 0: not said
 };
 static const struct kind plain = {
-    EXR_STORAGE_SCANLINE, EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS, 1, 1, 0, HEIGHT - 1, false};
+    EXR_STORAGE_SCANLINE, EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS, 1, 1, 0, HEIGHT - 1, false, {0}};
 
 #define OK(call) assert_int_equal(call, EXR_ERR_SUCCESS)
 
@@ -45,6 +46,8 @@ static void add_part(exr_context_t file, struct kind kind, const char *name) {
     OK(exr_set_tile_descriptor(file, part, TILE_WIDTH, TILE_HEIGHT,
                                kind.levels ? EXR_TILE_MIPMAP_LEVELS : EXR_TILE_ONE_LEVEL,
                                EXR_TILE_ROUND_DOWN));
+  exr_attr_chromaticities_t primaries = {kind.red[0], kind.red[1], .3f, .6f, .15f, .06f, .3f, .3f};
+  if (kind.red[0] > 0) OK(exr_attr_set_chromaticities(file, part, "chromaticities", &primaries));
   OK(exr_add_channel(file, part, "Y", kind.type, EXR_PERCEPTUALLY_LOGARITHMIC, kind.sampling,
                      kind.sampling));
 }
@@ -197,14 +200,25 @@ static void what_lossy_compressions_leave_is_read(void **state) {
   assert_reads(kind, half, two_and_a_bit);
 }
 
+static void unknown_primaries_are_taken_for_srgb(void **state) {
+  (void)state;
+  struct kind kind = plain;
+  kind.red[0] = .64f, kind.red[1] = .33f;
+  assert_reads(kind, value, value);
+  kind.red[0] = .5f, kind.red[1] = .4f;
+  assert_reads(kind, value, value);
+}
+
 static void what_we_do_not_read_is_refused_with_its_reason(void **state) {
   (void)state;
-  struct kind deep = plain, parts = plain, cropped = plain, sampled = plain, lossy = plain;
+  struct kind deep = plain, parts = plain, cropped = plain, sampled = plain, lossy = plain,
+              wide = plain;
   deep.storage = EXR_STORAGE_DEEP_SCANLINE;
   parts.parts = 2;
   cropped.top = 3;
   sampled.sampling = 3;
   sampled.bottom = 20;
+  wide.red[0] = .708f, wide.red[1] = .292f;
   lossy.compression = EXR_COMPRESSION_DWAA;
   const struct {
     struct kind kind;
@@ -214,6 +228,7 @@ static void what_we_do_not_read_is_refused_with_its_reason(void **state) {
              {cropped, "is cropped"},
              {sampled, "has subsampled channels"},
              {lossy, "is compressed with DWA"},
+             {wide, "has the primaries of Rec. 2020"},
              {plain, "damaged exr file"}}; // a header without pixels
   for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
     struct problem problem = {0};
@@ -259,6 +274,7 @@ int main(void) {
       cmocka_unit_test(half_and_uint_channels_become_floats),
       cmocka_unit_test(tiles_of_the_finest_level_are_read),
       cmocka_unit_test(what_lossy_compressions_leave_is_read),
+      cmocka_unit_test(unknown_primaries_are_taken_for_srgb),
       cmocka_unit_test(what_we_do_not_read_is_refused_with_its_reason),
       cmocka_unit_test(a_small_file_cannot_claim_a_large_image),
   };
