@@ -54,7 +54,8 @@ static bool measure_film(const struct cell *cell, const struct scene *scene, con
     return problem_set(problem, "%s: integrator %s needs a radius, say --radius R (scene units)",
                        scene->path, cell->integrator->name);
   struct estimator *estimator = arena_new(cli->arena, struct estimator, 1);
-  struct bvh *bvh = bvh_build(scene, (struct bvh_options){0}, cli->arena);
+  struct bvh *bvh =
+      bvh_build(scene, (struct bvh_options){.threads = plan_threads(&cli->options)}, cli->arena);
   *measure = plan_measurement(cell, scene, bvh, cli->options.skip_off);
   measure->pixel = plan_film(scene, &measure->n_points, cli->arena, problem);
   measure->estimator = estimator;

@@ -40,7 +40,8 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
   loaded->path = path;
   struct scene_options options = {.lenient = plan->options.lenient, .notes = stderr};
   if (!scene_read_with(path, options, arena, &loaded->scene, problem)) return NULL;
-  loaded->bvh = bvh_build(&loaded->scene, (struct bvh_options){0}, arena);
+  loaded->bvh = bvh_build(&loaded->scene,
+                          (struct bvh_options){.threads = plan_threads(&plan->options)}, arena);
   plan->n_scenes++;
   return loaded;
 }

@@ -157,22 +157,32 @@ static void read_crop_window(struct params *params, struct camera *camera) {
                     "cropwindow is x0 x1 y0 y1 in [0, 1] with at least a pixel inside");
 }
 
-// Sensors other than pbrt's default measure colours of their own.
+// Sensors other than pbrt's default measure colours of their own, and white balance changes them.
 static void read_sensor(struct params *params, struct reader *reader) {
-  const char *sensor = params_string(params, "sensor", "cie1931");
-  if (strcmp(sensor, "cie1931") != 0)
-    params_complain(params, "sensor",
-                    "sensor \"%s\" is not in this version; use \"cie1931\", which measures "
-                    "radiance as it is",
-                    sensor);
-  if (params_float(params, "whitebalance", 0) != 0)
-    params_complain(params, "whitebalance",
-                    "whitebalance must be 0 in this version: radiance is written as it is");
+  if (strcmp(params_string(params, "sensor", "cie1931"), "cie1931") != 0)
+    read_leave_out(reader, params, "sensor");
+  if (params_float(params, "whitebalance", 0) != 0) read_leave_out(reader, params, "whitebalance");
   if (params_float(params, "maxcomponentvalue", DBL_MAX) < (double)FLT_MAX)
-    params_complain(params, "maxcomponentvalue",
-                    "take maxcomponentvalue out: cutting samples off darkens the image");
+    read_leave_out(reader, params, "maxcomponentvalue"); // a clamp darkens the image
   reader->iso = params_float(params, "iso", 100);
   if (!(reader->iso > 0)) params_complain(params, "iso", "iso must be positive");
+}
+
+// Films that write the same colours and more besides. Only the colours are written.
+static bool read_other_film(struct reader *reader, struct call *call) {
+  struct params *params = &call->params;
+  if (strcmp(call->type, "gbuffer") != 0 && strcmp(call->type, "spectral") != 0)
+    return wrong_type(reader, call, "use \"rgb\"");
+  if (!reader->options.lenient)
+    return wrong_type(reader, call, "use \"rgb\", or --lenient, which writes its colours only");
+  if (reader->options.notes)
+    fprintf(reader->options.notes, "%s:%d:%d: Film \"%s\": only its colours are written\n",
+            call->place.file, call->place.line, call->place.column, call->type);
+  params_string(params, "coordinatesystem", NULL);
+  params_integer(params, "nbuckets", 0);
+  params_float(params, "lambdamin", 0);
+  params_float(params, "lambdamax", 0);
+  return true;
 }
 
 bool read_film(struct reader *reader, struct call *call) {
@@ -180,8 +190,7 @@ bool read_film(struct reader *reader, struct call *call) {
   struct scene *scene = reader->builder.scene;
   struct camera *camera = &scene->camera;
   if (!read_only_once(reader, call, &reader->film)) return false;
-  if (strcmp(call->type, "rgb") != 0)
-    return wrong_type(reader, call, "use \"rgb\": what others add is not written");
+  if (strcmp(call->type, "rgb") != 0 && !read_other_film(reader, call)) return false;
   camera->width = camera->full_width = read_resolution(params, "xresolution", 1280);
   camera->height = camera->full_height = read_resolution(params, "yresolution", 720);
   read_pixel_bounds(params, camera);

@@ -130,6 +130,7 @@ static void compressed_files_are_read(void **state) {
 static void what_is_left_out_leniently_is_said(void **state) {
   (void)state;
   put("main.pbrt",
+      "Film \"gbuffer\" \"string coordinatesystem\" \"world\" \"string sensor\" \"nikon_d850\"\n"
       "WorldBegin Material \"diffuse\" \"string normalmap\" \"n.png\"\n" TRIANGLE
       "Attribute \"material\" \"texture displacement\" \"bumps\" Material \"diffuse\"");
   struct arena keep = test_memory()->keep;
@@ -141,8 +142,10 @@ static void what_is_left_out_leniently_is_said(void **state) {
   assert_true(scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem));
   fclose(notes);
   snprintf(wanted, sizeof wanted,
-           "%1$s:1:31: Material \"diffuse\": \"normalmap\" is left out\n"
-           "%1$s:3:22: Material \"diffuse\": \"displacement\" is left out\n",
+           "%1$s:1:1: Film \"gbuffer\": only its colours are written\n"
+           "%1$s:1:50: Film \"gbuffer\": \"sensor\" is left out\n"
+           "%1$s:2:31: Material \"diffuse\": \"normalmap\" is left out\n"
+           "%1$s:4:22: Material \"diffuse\": \"displacement\" is left out\n",
            path_of("main.pbrt"));
   assert_string_equal(said, wanted);
 }
