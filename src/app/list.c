@@ -4,6 +4,7 @@
 #include "app/validate.h"
 #include "pbrt/suggest.h"
 #include "scene/info.h"
+#include "spectrum/spectrum.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -47,6 +48,17 @@ static void list_textures(void) {
     printf("  %-15s %s\n", texture_types[k]->name, texture_types[k]->about);
 }
 
+static void list_spectra(void) {
+  static const char *const kinds[] = {[NAMED_ILLUMINANT] = "light, at luminance 1",
+                                      [NAMED_METAL] = "index of a metal",
+                                      [NAMED_GLASS] = "index of a glass, at 587.6 nm"};
+  for (int k = 0; k < n_named_spectra; k++) {
+    const struct named_spectrum *named = &named_spectra[k];
+    printf("  %-15s %9.4f %9.4f %9.4f  %s\n", named->name, named->rgb[0], named->rgb[1],
+           named->rgb[2], kinds[named->kind]);
+  }
+}
+
 static void list_cameras(void) {
   for (int k = 0; camera_types[k]; k++)
     printf("  %-15s %s\n", camera_types[k]->name, camera_types[k]->about);
@@ -84,6 +96,7 @@ static const struct {
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},
     {"textures", "of scene files", list_textures},
+    {"spectra", "of scene files by name, as linear sRGB", list_spectra},
     {"cameras", "of scene files", list_cameras},
     {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
     {"skips", "what is left out where a scene does not need it", list_skips},

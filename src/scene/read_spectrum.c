@@ -51,7 +51,7 @@ static bool unknown_name(struct params *params, const char *name, const char *wa
   const char *nearest = suggest_name(wanted, names, n);
   return params_complain(params, name, "there is no spectrum \"%s\"%s%s%s", wanted,
                          nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                         nearest ? "\"?" : ", and a file has an extension");
+                         nearest ? "\"?" : " (photonlab list spectra; a file has an extension)");
 }
 
 // Numbers in place, or those of a file. A name without a dot is not taken for a file's.

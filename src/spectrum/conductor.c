@@ -10,7 +10,7 @@ static double reflectance(double eta, double k, double cosine) {
   double u = sqrt(size + real > 0 ? 0.5 * (size + real) : 0);
   double rs = (size + c2 - 2 * u * cosine) / (size + c2 + 2 * u * cosine);
   double a = c2 * size + s2 * s2, b = 2 * u * cosine * s2;
-  return 0.5 * rs * (1 + (a - b) / (a + b));
+  return a + b > 0 ? 0.5 * rs * (1 + (a - b) / (a + b)) : rs; // eta = k = 0, head on
 }
 
 // The average over the hemisphere weighted with the cosine: cos^2 is uniform. The midpoint rule of

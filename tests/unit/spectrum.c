@@ -339,6 +339,7 @@ static void wrong_numbers_are_refused(void **state) {
   assert_non_null(strstr(spectrum_from_numbers((double[]){400, 1, 500, -2}, 4, &s), "negative"));
   assert_non_null(strstr(spectrum_from_numbers((double[]){0, 1, 500, 2}, 4, &s), "greater"));
   assert_non_null(strstr(spectrum_from_numbers((double[]){400, 1, 500, NAN}, 4, &s), "negative"));
+  assert_non_null(strstr(spectrum_from_numbers((double[]){400, 1, 500, 1e31}, 4, &s), "1e30"));
   assert_non_null(strstr(spectrum_from_numbers(NULL, 0, &s), "two pairs"));
 }
 
