@@ -78,13 +78,18 @@ static bool is_unbiased(const char *name) {
   return IS_ONE_OF(name, known);
 }
 
-// Parameters of pbrt's that change how, not what; and one that changes what.
+// pbrt's integrators of other quantities, for `render` to refuse: an experiment has its own, so
+// what they read does not matter.
+static bool is_of_another_quantity(const char *name) {
+  static const char *const known[] = {"ambientocclusion", "function"};
+  return IS_ONE_OF(name, known);
+}
+
+// Parameters of pbrt's that change how, not what.
 static void read_pbrt_integrator(struct params *params) {
   params_string(params, "lightsampler", NULL);
   params_bool(params, "samplelights", true);
   params_bool(params, "samplebsdf", true);
-  if (params_bool(params, "regularize", false))
-    params_complain(params, "regularize", "regularize must be false: it changes the image");
   params_bool(params, "visualizestrategies", false); // bdpt: images beside the image
   params_bool(params, "visualizeweights", false);
   static const char *const mlt[] = {"bootstrapsamples", "chains", "mutationsperpixel"};
@@ -129,11 +134,14 @@ bool read_integrator(struct reader *reader, struct call *call) {
   if (!read_only_once(reader, call, &reader->integrator)) return false;
   bool unbiased = is_unbiased(call->type);
   settings->integrator = unbiased ? "path" : call->type;
+  if (is_of_another_quantity(call->type)) return true;
   read_ranges(params, settings);
   read_photons(params, settings);
   read_names(params, settings);
   settings->seed = read_at_least(params, "seed", 0, -1);
   if (unbiased) read_pbrt_integrator(params);
+  if (params_bool(params, "regularize", false))
+    params_complain(params, "regularize", "regularize must be false: it changes the image");
   return params_finish(params);
 }
 

@@ -109,6 +109,10 @@ static void integrator_names_of_pbrt_mean_path_and_others_are_kept(void **state)
   (void)state;
   assert_string_equal(scene_of("Integrator \"bdpt\"" HEAD TRIANGLE).settings.integrator, "path");
   assert_string_equal(scene_of("Integrator \"sppm\"" HEAD TRIANGLE).settings.integrator, "sppm");
+  assert_string_equal(
+      scene_of("Integrator \"ambientocclusion\" \"float maxdistance\" 3 " HEAD TRIANGLE)
+          .settings.integrator,
+      "ambientocclusion");
 }
 
 static void values_at_their_defaults_are_accepted(void **state) {
