@@ -46,6 +46,15 @@ static void test_ball_flux(void **state) {
   "AreaLightSource \"diffuse\" " parameters "\nShape \"trianglemesh\" \"integer indices\" "        \
   "[0 1 4 1 2 4 2 3 4 3 0 4] \"point3 P\" [0 0 0 3 0 0 3 2 0 0 2 0 0.6 1.4 0]\n"
 
+// The same rectangle in two trapezoids.
+#define TRAPEZOIDS                                                                                 \
+  "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\nShape \"bilinearmesh\" \"integer indices\" "     \
+  "[0 1 3 4 1 2 4 5] \"point3 P\" [0 0 0 0.5 0 0 3 0 0 0 2 0 2.2 2 0 3 2 0]\n"
+
+#define TUBE                                                                                       \
+  "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\nTranslate 0 0 1.3\nRotate 70 1 " \
+  "0 0\nScale 0.5 0.5 2\nShape \"cylinder\" \"float phimax\" 300\nAttributeEnd\n" LIGHT_PLANE
+
 // Each side is a half of the histogram: none of its directions may depend on the side.
 static void check_fan(const char *text, const char *name, bool both) {
   struct scene scene = light_scene(text, &arena);
@@ -177,16 +186,22 @@ static void test_nee_triangles(void **state) {
   }
   struct scene radiance = light_scene(FAN("\"rgb L\" [2 2 2]"), &arena);
   struct scene power = light_scene(FAN("\"float power\" 2.5"), &arena);
+  struct scene patches = light_scene(TRAPEZOIDS, &arena);
   check_nee(&radiance, "light fan nee", p, down, by_radiance, solid_angle);
+  check_nee(&patches, "light trapezoids nee", p, down, by_radiance, solid_angle);
   check_nee(&power, "light fan power nee", p, down, by_power, solid_angle);
 }
 
 // What multiple importance sampling relies on: the density `sample` reports is the one `pdf` gives.
 static void test_pdf_consistent(void **state) {
   (void)state;
-  const char *const texts[] = {FAN("\"rgb L\" [2 2 2]"), FAN("\"float power\" 2.5"),
-                               FAN("\"bool twosided\" true"), arena_format(&arena, BALL, "false"),
-                               DISC};
+  const char *const texts[] = {FAN("\"rgb L\" [2 2 2]"),
+                               FAN("\"float power\" 2.5"),
+                               FAN("\"bool twosided\" true"),
+                               TRAPEZOIDS,
+                               arena_format(&arena, BALL, "false"),
+                               DISC,
+                               TUBE};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     struct scene scene = light_scene(texts[i], &arena);
     const struct light *light = &scene.light[0];
@@ -195,7 +210,7 @@ static void test_pdf_consistent(void **state) {
     for (uint64_t j = 0; j < BATCH; j++) {
       double u[LIGHT_U], rgb[3];
       struct light_sample nee;
-      struct vec p = vec(0.3, 0.2, i < 3 ? 2 : -2);
+      struct vec p = vec(0.3, 0.2, i < 4 ? 2 : -2);
       stream_read(&stream, j, u);
       if (!light->type->sample(&scene, light, p, u, &nee)) continue;
       struct ray ray = {p, nee.wi, INFINITY, PRIMITIVE_NONE};
@@ -223,8 +238,8 @@ int main(void) {
       {"a sphere emits uniformly and by the cosine law", test_sphere, NULL, NULL, NULL},
       {"next-event estimation gives irradiance and solid angle of ball and disc", test_nee, NULL,
        NULL, NULL},
-      {"next-event estimation gives Lambert's theorem for triangles", test_nee_triangles, NULL,
-       NULL, NULL},
+      {"next-event estimation gives Lambert's theorem for triangles and patches",
+       test_nee_triangles, NULL, NULL, NULL},
       {"the pdf that is sampled is the pdf that is asked", test_pdf_consistent, NULL, NULL, NULL},
   };
   return cmocka_run_group_tests_name("light_area", tests, NULL, NULL);

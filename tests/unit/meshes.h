@@ -46,7 +46,7 @@ static inline struct vec draw_direction(struct draw *draw) {
   }
 }
 
-// Room for `shapes` shapes and `primitives` primitives (and twice as many vertices each).
+// Room for `shapes` shapes and `primitives` primitives (and four vertices each).
 struct mesh {
   struct arena start, arena;
   struct scene scene;
@@ -64,7 +64,7 @@ static inline struct arena mesh_memory(const struct arena *back) {
 static inline struct mesh mesh_new(int shapes, int primitives) {
   struct mesh m = {.start = mesh_memory(NULL)};
   m.arena = m.start;
-  m.scene.position = arena_alloc(&m.arena, 3 * primitives, sizeof(float[3]), alignof(float));
+  m.scene.position = arena_alloc(&m.arena, 4 * primitives, sizeof(float[3]), alignof(float));
   m.scene.triangle = arena_alloc(&m.arena, primitives, sizeof(uint32_t[3]), alignof(uint32_t));
   m.scene.patch = arena_alloc(&m.arena, primitives, sizeof(uint32_t[4]), alignof(uint32_t));
   m.scene.quadric = arena_new(&m.arena, struct quadric, primitives);
