@@ -10,7 +10,8 @@
 
 // A format has what it can do, NULL else. Writers get a stream that becomes the file only if they
 // return true; readers get all its bytes. `read` gives planes of floats; `texels` fills a raster
-// (except `linear` and `encoding`, and alpha may be 1 everywhere) and is only there where `read` is not.
+// (except `linear` and `encoding`, and alpha may be 1 everywhere) and is only there where `read` is
+// not.
 struct format {
   const char *extension;
   bool (*write)(FILE *, const char *path, const struct image *, struct problem *);

@@ -1,4 +1,5 @@
-// Images in memory and on disk. Rows run from the top, pixels are 32-bit floats, channels are planes.
+// Images in memory and on disk. Rows run from the top, pixels are 32-bit floats, channels are
+// planes.
 #ifndef IMAGE_IMAGE_H
 #define IMAGE_IMAGE_H
 
