@@ -175,9 +175,7 @@ static bool read_other_film(struct reader *reader, struct call *call) {
     return wrong_type(reader, call, "use \"rgb\"");
   if (!reader->options.lenient)
     return wrong_type(reader, call, "use \"rgb\", or --lenient, which writes its colours only");
-  if (reader->options.notes)
-    fprintf(reader->options.notes, "%s:%d:%d: Film \"%s\": only its colours are written\n",
-            call->place.file, call->place.line, call->place.column, call->type);
+  read_note(reader, call->place, call->params.directive, "only its colours are written");
   params_string(params, "coordinatesystem", NULL);
   params_integer(params, "nbuckets", 0);
   params_float(params, "lambdamin", 0);

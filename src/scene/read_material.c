@@ -22,15 +22,21 @@ bool read_unknown_type(struct reader *reader, const struct call *call, const cha
                     nearest ? "\"?" : "", list);
 }
 
-void read_leave_out(struct reader *reader, struct params *params, const char *name) {
+void read_note(const struct reader *reader, struct place place, const char *directive,
+               const char *what) {
   FILE *notes = reader->options.notes;
+  if (notes && !reader->in_later_instance)
+    fprintf(notes, "%s:%d:%d: %s: %s\n", place.file, place.line, place.column, directive, what);
+}
+
+void read_leave_out(struct reader *reader, struct params *params, const char *name) {
+  char what[128];
   if (!input_is_given(params, name)) return;
-  struct place place = params_place(params, name);
-  if (!reader->options.lenient)
+  snprintf(what, sizeof what, "\"%s\" is left out", name);
+  if (reader->options.lenient)
+    read_note(reader, params_place(params, name), params->directive, what);
+  else
     params_complain(params, name, "\"%s\" is not in this version; --lenient leaves it out", name);
-  else if (notes && !reader->in_later_instance)
-    fprintf(notes, "%s:%d:%d: %s: \"%s\" is left out\n", place.file, place.line, place.column,
-            params->directive, name);
   params_any(params, name);
 }
 

@@ -104,13 +104,18 @@ bool read_place_moving_shape(struct reader *reader, const struct shape_type *typ
   return ok;
 }
 
-// A definition's shapes wait for the instances.
+// A definition's shapes wait for the instances. pbrt-v4 warns and renders them without the light.
 static bool add_to_object(struct reader *reader, const struct shape_type *type,
                           const struct call *call) {
+  const char *directive = call->params.directive;
+  if (reader->now.area_light && !reader->options.lenient)
+    return problem_at(
+        reader->problem, call->place,
+        "%s: an area light in an object's definition does not shine; --lenient leaves "
+        "it out",
+        directive);
   if (reader->now.area_light)
-    return problem_at(reader->problem, call->place,
-                      "%s: an area light in an object's definition is not possible",
-                      call->params.directive);
+    read_note(reader, call->place, directive, "its area light is left out");
   *arena_push(&reader->lists, &reader->in_object->shapes) =
       (struct object_shape){type, call->params, reader->now};
   return true;

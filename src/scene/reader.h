@@ -240,6 +240,8 @@ void read_apply_defaults(const struct reader *, enum target, struct arena *, str
 bool read_check_media(struct reader *, const struct attributes *, const struct params *);
 bool read_check_outside(struct reader *, const struct call *);
 
+// Says what was left out, once for all instances of an object.
+void read_note(const struct reader *, struct place, const char *directive, const char *what);
 // A parameter that changes the image and that we do not know: refused, or left out if so asked.
 void read_leave_out(struct reader *, struct params *, const char *name);
 

@@ -279,8 +279,8 @@ struct scene {
 bool scene_read(const char *path, struct arena *, struct scene *, struct problem *);
 
 struct scene_options {
-  bool lenient; // displacement and normal maps are left out instead of refused
-  FILE *notes;  // what was left out is said here, a line each; NULL: nowhere
+  bool lenient;    // displacement, normal maps and the like are left out instead of refused
+  FILE *notes;     // what was left out is said here, a line each; NULL: nowhere
   bool own_folder; // files outside of the scene's folder are refused (absolute names, ..)
 };
 bool scene_read_with(const char *path, struct scene_options, struct arena *, struct scene *,

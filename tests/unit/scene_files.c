@@ -129,23 +129,23 @@ static void compressed_files_are_read(void **state) {
 
 static void what_is_left_out_leniently_is_said(void **state) {
   (void)state;
-  put("main.pbrt",
-      "Film \"gbuffer\" \"string coordinatesystem\" \"world\" \"string sensor\" \"nikon_d850\"\n"
-      "WorldBegin Material \"diffuse\" \"string normalmap\" \"n.png\"\n" TRIANGLE
-      "Attribute \"material\" \"texture displacement\" \"bumps\" Material \"diffuse\"");
+  put("main.pbrt", "WorldBegin Material \"diffuse\" \"string normalmap\" \"n.png\"\n" TRIANGLE
+                   "AreaLightSource \"diffuse\" ObjectBegin \"a\" Attribute \"shape\"\n"
+                   "\"texture displacement\" \"bumps\"\nShape \"disk\" ObjectEnd "
+                   "ObjectInstance \"a\" ObjectInstance \"a\"");
   struct arena keep = test_memory()->keep;
   struct scene scene;
   struct problem problem = {{0}};
-  char said[512] = "", wanted[512];
+  char said[1024] = "", wanted[1024];
   FILE *notes = fmemopen(said, sizeof said, "w");
   struct scene_options options = {.lenient = true, .notes = notes};
   assert_true(scene_read_with(path_of("main.pbrt"), options, &keep, &scene, &problem));
   fclose(notes);
+  assert_int_equal(scene.n_lights, 0);
   snprintf(wanted, sizeof wanted,
-           "%1$s:1:1: Film \"gbuffer\": only its colours are written\n"
-           "%1$s:1:50: Film \"gbuffer\": \"sensor\" is left out\n"
-           "%1$s:2:31: Material \"diffuse\": \"normalmap\" is left out\n"
-           "%1$s:4:22: Material \"diffuse\": \"displacement\" is left out\n",
+           "%1$s:1:31: Material \"diffuse\": \"normalmap\" is left out\n"
+           "%1$s:5:1: Shape \"disk\": its area light is left out\n"
+           "%1$s:4:1: Shape \"disk\": \"displacement\" is left out\n",
            path_of("main.pbrt"));
   assert_string_equal(said, wanted);
 }

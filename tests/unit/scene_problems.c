@@ -119,7 +119,7 @@ static const struct {
     {W "ObjectBegin \"a\" ObjectEnd\nObjectBegin \"a\"", 3, 13, "already defined"},
     {W "ObjectBegin \"block\" ObjectEnd\nObjectInstance \"blok\"", 3, 16,
      "did you mean \"block\"?"},
-    {W "AreaLightSource \"diffuse\" ObjectBegin \"a\"\n" SPHERE, 3, 1, "area light in an object"},
+    {W "AreaLightSource \"diffuse\" ObjectBegin \"a\"\n" SPHERE, 3, 1, "does not shine"},
     {W "ObjectBegin \"a\" Shape \"sphere\" \"float radius\" -1 ObjectEnd\n" SPHERE, 2, 32,
      "radius must be positive"},
     {W "Scale 1e-60 1e-60 1e-60\nObjectBegin \"a\" " SPHERE "ObjectEnd\n ObjectInstance \"a\"", 5,
