@@ -188,7 +188,7 @@ static struct split large_split(const struct build *b, const struct range *range
   const struct bvh_ref *ref = range_refs(b, range);
   uint32_t n = chunks_of(b, range->count);
 #pragma omp taskloop grainsize(1)
-  for (uint32_t c = 0; c < n; c++)
+  for (uint64_t c = 0; c < n; c++)
     split_fill(binning, ref + chunk[c].first, chunk[c].count, &chunk[c].bins);
   struct bins all = chunk[0].bins;
   for (uint32_t c = 1; c < n; c++) split_merge(binning, &all, &chunk[c].bins);
@@ -234,7 +234,7 @@ static void large_divide(const struct build *b, const struct range *range, struc
   const struct bvh_ref *from = range_refs(b, range);
   struct bvh_ref *to = b->ref[1 - range->array] + range->first;
 #pragma omp taskloop grainsize(1)
-  for (uint32_t c = 0; c < n; c++) chunk_partition(&binning, &split, left, &chunk[c], from, to);
+  for (uint64_t c = 0; c < n; c++) chunk_partition(&binning, &split, left, &chunk[c], from, to);
   struct extent extent[2] = {extent_empty(), extent_empty()};
   for (uint32_t c = 0; c < n; c++)
     for (int side = 0; side < 2; side++) extent_add(&extent[side], &chunk[c].extent[side]);
