@@ -14,6 +14,7 @@ struct mesh {
   double (*p)[3];  // finite
   double (*n)[3];  // or NULL; of any length, zero where a vertex has none
   double (*uv)[2]; // or NULL; finite
+  double (*s)[3];  // tangents, or NULL
   uint32_t (*triangle)[3];
   uint32_t (*quad)[4]; // around the face
 };

@@ -26,6 +26,7 @@ uint32_t build_begin_shape(struct scene_builder *builder, const struct shape_typ
                                                  .first = scene->n_primitives,
                                                  .normal = ROW_NONE,
                                                  .uv = ROW_NONE,
+                                                 .tangent = ROW_NONE,
                                                  .material = material,
                                                  .light = LIGHT_NONE,
                                                  .flip = flip};

@@ -24,35 +24,39 @@ static bool add_positions(struct scene_builder *builder, struct params *params,
   return true;
 }
 
-// In world space, on the side ReverseOrientation says.
-static struct vec world_normal(const struct scene_builder *builder,
-                               const struct transform *object_from_world, const double n[3]) {
-  struct vec world = transform_normal(object_from_world, vec(n[0], n[1], n[2]));
-  return builder->reverse_orientation ? vec_scale(world, -1) : world;
+// How normals go to world space: by the inverse's transpose, turned by ReverseOrientation.
+static struct transform normal_transform(const struct scene_builder *builder) {
+  struct transform inverse, t = transform_identity();
+  transform_invert(builder->world_from_object, &inverse); // the reader checked it
+  double sign = builder->reverse_orientation ? -1 : 1;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) t.m[i][j] = sign * inverse.m[j][i];
+  return t;
 }
 
-// pbrt interpolates normals as long as they come, so lengths keep their ratios; divided by the
-// largest they fit into floats.
-static void add_normals(struct scene_builder *builder, const struct mesh *mesh,
-                        struct shape *shape) {
-  struct scene *scene = builder->scene;
-  struct transform object_from_world;
-  transform_invert(builder->world_from_object, &object_from_world); // the reader checked it
-  scene->normal = build_grow(builder->arena, scene->normal, scene->n_normals, mesh->n_vertices,
-                             sizeof *scene->normal);
+static struct vec world_vector(const struct transform *to_world, const double v[3]) {
+  return transform_direction(to_world, vec(v[0], v[1], v[2]));
+}
+
+// Appends vectors of vertices to `array`; the row of the first. pbrt interpolates them as long as
+// they come, so lengths keep their ratios; divided by the largest they fit into floats.
+static uint32_t add_vectors(struct scene_builder *builder, const struct transform *to_world,
+                            double (*from)[3], uint32_t n, float (**array)[3], uint32_t *count) {
+  uint32_t first = *count;
   double longest = 0;
-  for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-    double length = vec_length(world_normal(builder, &object_from_world, mesh->n[k]));
+  for (uint32_t k = 0; k < n; k++) {
+    double length = vec_length(world_vector(to_world, from[k]));
     if (length > longest && length < INFINITY) longest = length;
   }
-  for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-    struct vec n = world_normal(builder, &object_from_world, mesh->n[k]);
-    n = longest > 0 ? vec_scale(n, 1 / longest) : vec(0, 0, 0);
-    float *to = scene->normal[scene->n_normals + k];
-    to[0] = (float)n.x, to[1] = (float)n.y, to[2] = (float)n.z;
+  *array = build_grow(builder->arena, *array, first, n, sizeof **array);
+  for (uint32_t k = 0; k < n; k++) {
+    struct vec v = world_vector(to_world, from[k]);
+    v = longest > 0 ? vec_scale(v, 1 / longest) : vec(0, 0, 0);
+    float *to = (*array)[first + k];
+    to[0] = (float)v.x, to[1] = (float)v.y, to[2] = (float)v.z;
   }
-  shape->normal = scene->n_normals;
-  scene->n_normals += mesh->n_vertices;
+  *count += n;
+  return first;
 }
 
 static bool add_uvs(struct scene_builder *builder, struct params *params, const struct mesh *mesh,
@@ -114,7 +118,13 @@ bool scene_add_mesh(struct scene_builder *builder, struct params *params, const 
   struct shape *shape = &scene->shape[scene->n_shapes - 1];
   shape->vertex = scene->n_positions;
   if (!add_positions(builder, params, mesh)) return false;
-  if (mesh->n) add_normals(builder, mesh, shape);
+  struct transform normal_to_world = normal_transform(builder);
+  if (mesh->n)
+    shape->normal = add_vectors(builder, &normal_to_world, mesh->n, mesh->n_vertices,
+                                &scene->normal, &scene->n_normals);
+  if (mesh->s)
+    shape->tangent = add_vectors(builder, &builder->world_from_object, mesh->s, mesh->n_vertices,
+                                 &scene->tangent, &scene->n_tangents);
   if (mesh->uv && !add_uvs(builder, params, mesh, shape)) return false;
   if (mesh->n_triangles) add_triangles(builder, mesh, shape);
   if (!mesh->n_quads) return true;
@@ -123,7 +133,7 @@ bool scene_add_mesh(struct scene_builder *builder, struct params *params, const 
     build_begin_shape(builder, both.type, both.material, both.flip);
     shape = &scene->shape[scene->n_shapes - 1];
     shape->vertex = both.vertex, shape->normal = both.normal, shape->uv = both.uv;
-    shape->alpha = both.alpha;
+    shape->tangent = both.tangent, shape->alpha = both.alpha;
   }
   shape->type = &shape_bilinearmesh;
   add_patches(builder, mesh, shape);

@@ -48,6 +48,7 @@ struct shape {
   uint32_t local;             // first row of scene.triangle, scene.patch or scene.quadric
   uint32_t vertex;            // meshes: first row of scene.position
   uint32_t normal, uv;        // meshes: rows of scene.normal, scene.uv of the first vertex, or ROW_NONE
+  uint32_t tangent;           // of scene.tangent
   uint32_t material, light;   // rows of scene.material, scene.light (or LIGHT_NONE)
   const struct input *alpha;  // opacity, NULL: opaque
   bool flip;                  // geometric normal reversed (ReverseOrientation xor mirrored matrix)
@@ -257,6 +258,7 @@ struct scene {
   float (*position)[3];    // vertices in world space, rounded once to float
   float (*normal)[3];      // of vertices, in world space, the longest of a mesh of unit length (build_mesh.c)
   float (*uv)[2];
+  float (*tangent)[3];     // as normal
   uint32_t (*triangle)[3]; // rows of position
   uint32_t (*patch)[4];    // rows of position: p00, p10, p01, p11
   struct quadric *quadric;
@@ -268,8 +270,8 @@ struct scene {
   uint32_t *infinite;      // rows of light with a background
   struct motion *motion;
   double motion_time[2];   // TransformTimes
-  uint32_t n_positions, n_normals, n_uvs, n_triangles, n_patches, n_quadrics, n_shapes, n_primitives,
-      n_materials, n_lights, n_infinite, n_motions;
+  uint32_t n_positions, n_normals, n_uvs, n_tangents, n_triangles, n_patches, n_quadrics, n_shapes,
+      n_primitives, n_materials, n_lights, n_infinite, n_motions;
 
   struct box bounds;       // of all primitives, at all times
   struct inventory inventory;

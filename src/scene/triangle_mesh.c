@@ -41,14 +41,19 @@ static void barycentric(const float vertex[3][3], struct vec p, double b[3]) {
   b[2] = 1 - b[0] - b[1];
 }
 
-// The vertices' normals interpolated, not of unit length; zero where they cancel.
-static struct vec interpolated_normal(const struct scene *scene, const struct shape *shape,
-                                      const uint32_t row[3], const double b[3]) {
+// Vectors of the vertices, `vector` of the shape's first, interpolated: not of unit length, zero
+// where they cancel.
+static struct vec interpolate(const float (*vector)[3], const struct shape *shape,
+                              const uint32_t row[3], const double b[3]) {
   struct vec sum = vec(0, 0, 0);
   for (int i = 0; i < 3; i++)
-    sum = vec_along(sum, triangle_vertex(scene->normal[shape->normal + (row[i] - shape->vertex)]),
-                    b[i]);
+    sum = vec_along(sum, triangle_vertex(vector[row[i] - shape->vertex]), b[i]);
   return sum;
+}
+
+static struct vec interpolated_normal(const struct scene *scene, const struct shape *shape,
+                                      const uint32_t row[3], const double b[3]) {
+  return interpolate((const float(*)[3])scene->normal + shape->normal, shape, row, b);
 }
 
 struct vec triangle_normal(const struct scene *scene, const struct shape *shape, uint32_t primitive,
@@ -96,6 +101,10 @@ void triangle_detail(const struct scene *scene, const struct shape *shape,
   gather_uv(scene, shape, row, uv);
   for (int k = 0; k < 2; k++) surface->uv[k] = b[0] * uv[0][k] + b[1] * uv[1][k] + b[2] * uv[2][k];
   surface->dpdu = derivative(vertex, uv);
+  if (shape->tangent != ROW_NONE) {
+    struct vec s = interpolate((const float(*)[3])scene->tangent + shape->tangent, shape, row, b);
+    if (vec_dot(s, s) > 0) surface->dpdu = s;
+  }
   if (shape->normal == ROW_NONE) return;
   struct vec ns = interpolated_normal(scene, shape, row, b);
   double length = vec_length(ns);

@@ -80,8 +80,12 @@ static inline void mesh_add_shape(struct mesh *m, const struct shape_type *type)
   uint32_t local = type == &shape_trianglemesh   ? s->n_triangles
                    : type == &shape_bilinearmesh ? s->n_patches
                                                  : s->n_quadrics;
-  s->shape[s->n_shapes++] = (struct shape){
-      .type = type, .first = s->n_primitives, .local = local, .normal = ROW_NONE, .uv = ROW_NONE};
+  s->shape[s->n_shapes++] = (struct shape){.type = type,
+                                           .first = s->n_primitives,
+                                           .local = local,
+                                           .normal = ROW_NONE,
+                                           .uv = ROW_NONE,
+                                           .tangent = ROW_NONE};
 }
 
 static inline void mesh_count_primitive(struct mesh *m) {

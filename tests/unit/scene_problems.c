@@ -238,7 +238,7 @@ static const struct {
     {W TRIANGLE "\"normal N\" [0 0 1 0 0 1]", 2, 53, "2 values of \"N\" for 3 vertices"},
     {W TRIANGLE "\"point2 uv\" [0 0 1 0]", 2, 53, "2 values of \"uv\" for 3 vertices"},
     {W TRIANGLE "\"point2 uv\" [0 0 1 0 0 1e39]", 2, 53, "uv of vertex 2 is too large"},
-    {W TRIANGLE "\"vector3 S\" [0 0 1 0 0 1 0 0 1]", 2, 53, "\"S\" is not in this version"},
+    {W TRIANGLE "\"vector3 S\" [0 0 1]", 2, 53, "1 values of \"S\" for 3 vertices"},
     {W "Shape \"bilinearmesh\"", 2, 1, "\"point3 P\" is missing"},
     {W "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]", 2, 22, "indices\" is missing"},
     {W "Shape \"bilinearmesh\" \"point3 P\" [0 0 0] \"integer indices\" [0 0 0]", 2, 41,

@@ -483,6 +483,21 @@ static void normals_that_cancel_are_none(void **state) {
   assert_vec(surface.ng, 0, 0, 1);
 }
 
+// A texture wants them, so the shape is detailed. Halfway between the first two vertices the mean,
+// as the matrix moves it; of no length it is dp/du.
+static void tangents_of_vertices_are_interpolated(void **state) {
+  (void)state;
+  struct scene scene = scene_of(
+      "WorldBegin LightSource \"point\" ReverseOrientation Scale 1 2 -1 Shape \"trianglemesh\" "
+      "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"float alpha\" 0.5 \"vector3 S\" [0 2 0 1 0 1 -1 0 -1]");
+  struct ray ray = {vec(0.5, 0, 5), vec(0, 0, -1), INFINITY, PRIMITIVE_NONE};
+  struct surface surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+  assert_vec(vec_normalize(surface.dpdu), 0.5, 2, -0.5);
+  ray.o = vec(0.5, 1, 5); // between the last two
+  surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+  assert_vec(vec_normalize(surface.dpdu), 1, 0, 0);
+}
+
 // ---- files ----
 // A quad is a patch of the file's order around the face, in a shape beside the triangles'; both
 // emit.
@@ -519,6 +534,7 @@ int main(void) {
       cmocka_unit_test(samples_weighed_by_their_density_measure_the_area),
       cmocka_unit_test(normals_of_vertices_are_interpolated_and_choose_the_side),
       cmocka_unit_test(normals_that_cancel_are_none),
+      cmocka_unit_test(tangents_of_vertices_are_interpolated),
       cmocka_unit_test(a_ply_file_may_hold_triangles_and_quads),
   };
   return cmocka_run_group_tests_name("shape_detail", tests, NULL, NULL);

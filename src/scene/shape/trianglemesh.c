@@ -1,5 +1,6 @@
 // Shape "trianglemesh": `point3 P`, `integer indices` (which may be absent for one triangle),
-// `normal N`, `point2 uv`. `faceIndices`, which only Ptex textures read, mean nothing here.
+// `normal N`, `vector3 S` (tangents), `point2 uv`. `faceIndices`, which only Ptex textures read,
+// mean nothing here.
 #include "scene/shape/mesh_params.h"
 #include "scene/shape/triangle.h"
 
@@ -7,9 +8,7 @@ static bool read(struct scene_builder *builder, struct params *params) {
   struct mesh mesh;
   ptrdiff_t n_indices, n_faces;
   if (!mesh_params_vertices(params, &mesh) || !mesh_params_attributes(params, &mesh)) return false;
-  if (input_is_given(params, "S"))
-    return params_complain(params, "S",
-                           "\"S\" is not in this version; without it tangents follow uv");
+  mesh.s = (double(*)[3])mesh_params_per_vertex(params, "vector3", "S", 3, mesh.n_vertices);
   uint32_t *index = mesh_params_indices(params, 3, mesh.n_vertices, builder->arena, &n_indices);
   params_array(params, "integer", "faceIndices", &n_faces);
   if (!index || !params_finish(params)) return false;
