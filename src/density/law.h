@@ -12,6 +12,10 @@ struct law {
   // e in rho ~ i^-e. The variance of the average then falls as N^-(1 - e), the bias of iteration i as
   // i^-(2 e / d) (theory 3.2).
   double (*measure_exponent)(double alpha);
+  // Local statistics (theory 2.4), NULL: none. n: what was counted so far (0: nothing), m: photons
+  // in the disc in this pass. Returns the new n and *ratio = r2 of the next pass / r2 of this one;
+  // m = 0 changes neither. rho is then what constant density gives.
+  double (*count)(double alpha, double n, double m, double *ratio);
 };
 
 extern const struct law laws[];
