@@ -11,7 +11,9 @@
 
 static void list_laws(void) {
   for (int k = 0; k < n_laws; k++)
-    printf("  %-15s %s\n  %15s   %s\n", laws[k].name, laws[k].formula, "", laws[k].source);
+    printf("  %-15s %s\n  %15s   rho_i %s-> %s, %.6f at alpha = 2/3\n  %15s   %s\n", laws[k].name,
+           laws[k].formula, "", laws[k].measure_exponent(0) > 0 ? "i^(1 - alpha) " : "",
+           laws[k].constant_formula, laws[k].constant(2.0 / 3), "", laws[k].source);
 }
 
 static void list_kernels(void) {

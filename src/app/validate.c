@@ -139,10 +139,13 @@ static void check_law_sums(struct report *report) {
 // What every law promises: it starts at 1, falls as i^-measure_exponent, and radii are the roots.
 static void check_law(struct report *report, const struct law *law) {
   static const double alphas[] = {0, 0.3, 0.5, 2.0 / 3, 0.8, 1};
-  double start = 0, decay = 0, root = 0;
+  double start = 0, decay = 0, root = 0, constant = 0;
   for (size_t k = 0; k < sizeof alphas / sizeof alphas[0]; k++) {
     double alpha = alphas[k], rho = law->rho(alpha, 1000000000000000);
     start = worse(start, law->rho(alpha, 1), 1);
+    if (law->rho(alpha, 2) == 0) continue; // no sequence
+    double grown = rho * num_pow(1e15, law->measure_exponent(alpha));
+    constant = worse(constant, grown, law->constant(alpha));
     double fall = num_pow(1e-3, law->measure_exponent(alpha)); // from 1e12 to 1e15
     decay = worse(decay, rho / law->rho(alpha, 1000000000000), fall);
     for (int d = 1; d <= 3; d++) {
@@ -153,6 +156,7 @@ static void check_law(struct report *report, const struct law *law) {
   check(report, start, 0, "law %s: rho_1 = 1", law->name);
   // Theory 2.1: the next term is alpha (1 - alpha) / (2 i) at most.
   check(report, decay, 1e-12, "law %s: decay is i^-measure_exponent", law->name);
+  check(report, constant, 4e-15, "law %s: rho_i i^measure_exponent at i = 1e15", law->name);
   check(report, root, 2e-15, "law %s: r^d is rho r1^d, d = 1, 2, 3", law->name);
 }
 

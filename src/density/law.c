@@ -49,43 +49,48 @@ static double power_rho(double alpha, uint64_t i) {
   return num_pow((double)i, alpha) / (double)i;
 }
 
-// Hachisuka, Ogaki, Jensen 2008: all of the first pass that finds photons is counted, then the
-// fraction alpha of each.
-static double hachisuka_count(double alpha, double n, double m, double *ratio) {
-  *ratio = 1;
-  if (m == 0) return n;
-  if (n == 0) n = m;
+static double shrinking_exponent(double alpha) { return 1 - alpha; }
+
+static double one(double alpha) {
+  (void)alpha;
+  return 1;
+}
+
+// The fraction alpha of the m photons found is kept, and the radius shrinks so that their density
+// stays.
+static double keep_fraction(double alpha, double n, double m, double *ratio) {
   double kept = n + alpha * m;
-  *ratio = kept / (n + m);
+  *ratio = m > 0 ? kept / (n + m) : 1;
   return kept;
 }
 
-// pbrt's renderers start with N = 0, so that the first pass already shrinks by alpha: the second
-// radius is sqrt(alpha) r1, and from then on the sequence is that of knaus-zwicker times alpha.
+// All of the first pass that finds photons is counted, the fraction alpha of each: Hachisuka,
+// Ogaki, Jensen 2008. N = (1 + alpha) M after it, as if a pass before had found as many.
+static double hachisuka_count(double alpha, double n, double m, double *ratio) {
+  return keep_fraction(alpha, n == 0 ? m : n, m, ratio);
+}
+
+// pbrt's renderers start with N = 0, so that the first pass already shrinks by alpha: from then on
+// the sequence is that of knaus-zwicker times alpha.
 static double pbrt_rho(double alpha, uint64_t i) {
   return i == 1 ? 1 : alpha * knaus_zwicker_rho(alpha, i - 1);
 }
 
-static double pbrt_count(double alpha, double n, double m, double *ratio) {
-  *ratio = 1;
-  if (m == 0) return n;
-  double kept = n + alpha * m;
-  *ratio = kept / (n + m);
-  return kept;
-}
-
-static double shrinking_exponent(double alpha) { return 1 - alpha; }
+static double pbrt_constant(double alpha) { return alpha * num_rgamma1p(alpha); }
 
 // clang-format off
 const struct law laws[] = {
-  {"fixed", "1", "no reduction", fixed_rho, fixed_exponent, NULL},
+  {"fixed", "1", "no reduction", fixed_rho, fixed_exponent, "1", one, NULL},
   {"knaus-zwicker", "product over k < i of (k + alpha)/(k + 1)", "Knaus and Zwicker 2011",
-   knaus_zwicker_rho, shrinking_exponent, NULL},
-  {"power", "i^(alpha - 1)", "SmallVCM (Georgiev et al. 2012)", power_rho, shrinking_exponent, NULL},
-  {"hachisuka", "(N + alpha M)/(N + M) a pass, N = M at first", "Hachisuka, Ogaki and Jensen 2008",
-   knaus_zwicker_rho, shrinking_exponent, hachisuka_count},
-  {"pbrt", "(N + alpha M)/(N + M) a pass, N = 0 at first", "pbrt-v3, pbrt-v4 (gamma = 2/3 there)",
-   pbrt_rho, shrinking_exponent, pbrt_count},
+   knaus_zwicker_rho, shrinking_exponent, "1/Gamma(1 + alpha)", num_rgamma1p, NULL},
+  {"power", "i^(alpha - 1)", "Georgiev et al. 2012",
+   power_rho, shrinking_exponent, "1", one, NULL},
+  {"smallvcm", "i^(alpha - 1), the same as power", "SmallVCM (alpha = 0.75 and a least radius of 1e-7 there)",
+   power_rho, shrinking_exponent, "1", one, NULL},
+  {"hachisuka", "local: (N + alpha M)/(N + M) a pass, N = M at first", "Hachisuka, Ogaki and Jensen 2008",
+   knaus_zwicker_rho, shrinking_exponent, "1/Gamma(1 + alpha)", num_rgamma1p, hachisuka_count},
+  {"pbrt", "local: (N + alpha M)/(N + M) a pass, N = 0 at first", "pbrt-v3 and pbrt-v4 (alpha = 2/3 there)",
+   pbrt_rho, shrinking_exponent, "alpha/Gamma(1 + alpha)", pbrt_constant, keep_fraction},
 };
 // clang-format on
 const int n_laws = sizeof laws / sizeof laws[0];
