@@ -78,7 +78,8 @@ static bool circle_mean(const struct neighbourhood *at, double distance, double 
 
 static bool light_is_alone(const struct scene *scene, const struct cell *cell) {
   return scene->n_lights == 1 && scene->light[0].type->closed_form &&
-         cell->direct == DIRECT_PHOTONS && !cell->footprint && cell->integrator->photons;
+         cell->direct == DIRECT_PHOTONS && !cell->left_out && !cell->footprint &&
+         cell->integrator->photons;
 }
 
 bool ring_mean_find(const struct scene *scene, const struct cell *cell, const struct probe *probe,

@@ -71,6 +71,7 @@ static const struct option options[] = {
     {"kernel", "NAME", "kernel", "see 'photonlab list kernels'", NULL},
     {"law", "NAME", "law", "see 'photonlab list laws'", NULL},
     {"direct", "HOW", "direct", "direct light by photons or nee (next-event estimation)", NULL},
+    {"view", "PATHS", "view", "all, or a sum of emitted, direct, caustics, indirect", NULL},
     {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt", NULL},
     {"pixel", "WHERE", "pixel", "centre or footprint", NULL},
 };

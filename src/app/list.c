@@ -5,6 +5,7 @@
 #include "pbrt/suggest.h"
 #include "scene/info.h"
 #include "spectrum/spectrum.h"
+#include "walk/light_path.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -71,6 +72,11 @@ static void list_filters(void) {
     printf("  %-15s %s\n", filter_types[k]->name, filter_types[k]->about);
 }
 
+static void list_views(void) {
+  for (int k = 0; k < LIGHT_PATHS; k++)
+    printf("  %-15s %s\n", light_paths[k].name, light_paths[k].about);
+}
+
 static void list_skips(void) {
   for (int k = 0; k < n_skip_rows; k++)
     printf("  %-15s %s\n", skip_rows[k].name, skip_rows[k].about);
@@ -101,6 +107,7 @@ static const struct {
     {"spectra", "of scene files by name, as linear sRGB", list_spectra},
     {"cameras", "of scene files", list_cameras},
     {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
+    {"views", "light paths: L light, S delta lobe, D any other scattering, E eye", list_views},
     {"skips", "what is left out where a scene does not need it", list_skips},
     {"experiment", "keys of an experiment file: name, default, meaning", list_experiment},
     {"log", "columns of log.csv: name, unit, meaning", list_log},

@@ -39,6 +39,7 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   say(&said, cli, "iterations", arena_format(arena, "%" PRId64, iterations));
   say(&said, cli, "seed", arena_format(arena, "%" PRId64, seed));
   say(&said, cli, "direct", or (file->direct, "photons"));
+  say(&said, cli, "view", "all");
   say(&said, cli, "depth", arena_format(arena, "%d", file->max_depth));
   say(&said, cli, "pixel", file->centre ? "centre" : "footprint");
   *cell = (struct cell){.radius = NAN, .runs = 1, .scene = file_base_name(scene->path, arena)};
@@ -97,6 +98,6 @@ static int render(struct cli *cli, struct problem *problem) {
 
 const struct command command_render = {
     "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
-    "output integrator spp iterations photons radius alpha kernel law direct maxdepth pixel seed "
+    "output integrator spp iterations photons radius alpha kernel law direct view maxdepth pixel seed "
     "threads quiet no-skip lenient",
     render};

@@ -27,6 +27,7 @@ static int weigh(struct gather *gather, const struct photons *photons,
     bsdf_value(&point->bsdf, point->wo, wi, TRANSPORT_RADIANCE, f);
     if (f[0] == 0 && f[1] == 0 && f[2] == 0) continue;
     gather->distance2[kept] = gather->distance2[j];
+    if (gather->left_out && (photons->kind[photon] & gather->left_out)) factor = 0;
     for (int c = 0; c < photons->n_channels; c++)
       gather->value[c][kept] = f[c] * factor * photons->flux[c][photon];
     kept++;

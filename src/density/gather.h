@@ -29,6 +29,7 @@ struct gather {
   int64_t capacity;
   uint32_t *photon;
   double *distance2, *t2, *weight, *value[3];
+  unsigned left_out; // bits of enum light_path: photons of these count, but bring nothing
 };
 
 // Adds to out[disc * stride + c] the radiance towards the eye at `point`. The grid's r is at least

@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 // One estimator on the shared photons.
 struct estimator {
@@ -36,6 +37,14 @@ struct measurement {
   const struct estimator *estimator;
   int n_estimators;
   unsigned skip_off; // bits of enum skip: what is not to be skipped
+  unsigned left_out; // bits of enum light_path: what is not to be seen; 0: all is
 };
+
+// Kernel, law and radius mean nothing to some integrators: all estimators get the first one's frame.
+static inline void measurement_copy(const struct measurement *measure, double *frame) {
+  long size = (long)measure->n_points * measure->features.n_channels;
+  for (int e = 1; e < measure->n_estimators; e++)
+    memcpy(frame + e * size, frame, (size_t)size * sizeof *frame);
+}
 
 #endif

@@ -9,13 +9,14 @@ struct photon_map *photon_map_new(const struct measurement *measure, struct aren
   struct photon_map *map = arena_new(arena, struct photon_map, 1);
   map->measure = measure;
   map->arena = arena;
+  map->gather.left_out = measure->left_out;
   map->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
   map->point = arena_new(arena, struct eye_point, measure->n_points);
   map->disc = arena_new(arena, struct disc, measure->n_estimators);
   map->c = arena_new(arena, double, measure->n_estimators);
   for (int e = 0; e < measure->n_estimators; e++)
     map->c[e] = measure->estimator[e].kernel->constants(2).c;
-  if (measure->nee)
+  if (measure->nee && !(measure->left_out & LIGHT_PATH_DIRECT))
     map->direct = arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
   return map;
 }
@@ -104,12 +105,16 @@ static void add_direct(struct photon_map *map, uint64_t i, double *frame) {
     for (long k = 0; k < stride; k++) frame[e * stride + k] += map->direct[k];
 }
 
-void photon_map_add_seen(struct photon_map *map, uint64_t i, double *frame) {
+static void add_emitted(const struct photon_map *map, double *frame) {
   const struct measurement *measure = map->measure;
   int n_channels = measure->features.n_channels;
   for (int e = 0; e < measure->n_estimators; e++)
     for (int j = 0; j < measure->n_points; j++, frame += n_channels)
       for (int c = 0; c < n_channels; c++) frame[c] += map->point[j].emitted[c];
-  frame -= photon_map_frame(measure);
+}
+
+void photon_map_add_seen(struct photon_map *map, uint64_t i, double *frame) {
+  const struct measurement *measure = map->measure;
+  if (!(measure->left_out & LIGHT_PATH_EMITTED)) add_emitted(map, frame);
   if (map->direct && measure->depth > 0) add_direct(map, i, frame);
 }

@@ -1,7 +1,10 @@
 #include "experiment/cell_keys.h"
 
+#include "walk/light_path.h"
+
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char *count(uint64_t n, char *buffer) {
   snprintf(buffer, CELL_KEY_SIZE, "%" PRIu64, n);
@@ -33,6 +36,20 @@ KEY(direct, cell->direct == DIRECT_NEE ? "nee" : "photons")
 KEY(depth, count((uint64_t)cell->depth, buffer))
 KEY(pixel, cell->footprint ? "footprint" : "centre")
 
+// A sum of names, as a file may give it.
+static const char *key_view(const struct cell *cell, int digits, char *buffer) {
+  (void)digits;
+  if (!cell->left_out) return "all";
+  buffer[0] = 0;
+  for (int k = 0; k < LIGHT_PATHS; k++) {
+    if (cell->left_out & light_paths[k].bit) continue;
+    size_t length = strlen(buffer);
+    snprintf(buffer + length, CELL_KEY_SIZE - length, "%s%s", length ? "+" : "",
+             light_paths[k].name);
+  }
+  return buffer;
+}
+
 // As in manifest.json: JSON's numbers do not hold 64 bits everywhere.
 static const char *key_seed(const struct cell *cell, int digits, char *buffer) {
   (void)digits;
@@ -53,6 +70,7 @@ const struct cell_key cell_keys[CELL_KEYS] = {
     {"runs", KEY_COUNT, false, key_runs},
     {"seed", KEY_NAME, false, key_seed},
     {"direct", KEY_NAME, false, key_direct},
+    {"view", KEY_NAME, false, key_view},
     {"depth", KEY_COUNT, false, key_depth},
     {"pixel", KEY_NAME, false, key_pixel},
 };

@@ -19,6 +19,8 @@ const struct experiment_key experiment_keys[] = {
     {"seed", "(the file's name)", "a number, or a name that is hashed", true, key_read_seed},
     {"direct", "photons", "direct light by photons or nee (next-event estimation)", true,
      key_read_direct},
+    {"view", "all", "light paths seen: all, or a sum of emitted, direct, caustics, indirect", true,
+     key_read_view},
     {"depth", "64", "pbrt's maxdepth", true, key_read_depth},
     {"pixel", "centre", "centre, or footprint: uniform in the pixel, new each iteration", true,
      key_read_pixel},

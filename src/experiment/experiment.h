@@ -35,6 +35,7 @@ struct cell {
   int n_probes;            // 0: default
   bool footprint;          // pixel: footprint (true) or centre
   enum direct direct;
+  unsigned left_out;       // bits of enum light_path that are not seen; 0: all are
   int depth;
   unsigned quantities;     // what is fitted: bits of enum quantity
   uint64_t *image;         // running averages after these iterations are kept as moment images
@@ -58,7 +59,7 @@ struct experiment {
 bool experiment_read(const char *path, const char *quality, struct arena *, struct experiment *,
                      struct problem *);
 
-// Cells whose photon and eye paths are the same (scene, photons, depth, direct, seed, runs,
+// Cells whose photon and eye paths are the same (scene, photons, depth, direct, view, seed, runs,
 // iterations, probes, footprint, images, integrator): they share one photon pass. Formed from the
 // experiment alone, in the order of the first cell of each.
 struct group {

@@ -1,6 +1,7 @@
 #include "experiment/keys.h"
 #include "numeric/rng.h"
 #include "scene/scene.h"
+#include "walk/light_path.h"
 
 #include <limits.h>
 #include <string.h>
@@ -98,6 +99,34 @@ bool key_read_direct(struct reading *reading, const struct node *node, struct ce
   if (!value_choice(reading, node, names, 2, &choice)) return false;
   cell->direct = (enum direct)choice;
   return true;
+}
+
+static bool complain_view(struct reading *reading, const struct node *node) {
+  return value_complain(
+      reading, node, "is neither \"all\" nor a sum as \"direct+caustics\" (known: %s, %s, %s, %s)",
+      light_paths[0].name, light_paths[1].name, light_paths[2].name, light_paths[3].name);
+}
+
+// "all", or names with + between them; no name twice.
+bool key_read_view(struct reading *reading, const struct node *node, struct cell *cell) {
+  const char *at = value_text(reading, node, "light paths to be seen");
+  if (!at) return false;
+  cell->left_out = 0;
+  if (strcmp(at, "all") == 0) return true;
+  cell->left_out = LIGHT_PATH_ALL;
+  for (;; at++) {
+    size_t length = strcspn(at, "+");
+    int k = 0;
+    while (k < LIGHT_PATHS &&
+           (strlen(light_paths[k].name) != length || memcmp(at, light_paths[k].name, length) != 0))
+      k++;
+    if (k == LIGHT_PATHS) return complain_view(reading, node);
+    if (!(cell->left_out & light_paths[k].bit))
+      return value_complain(reading, node, "names %s twice", light_paths[k].name);
+    cell->left_out &= ~(unsigned)light_paths[k].bit;
+    at += length;
+    if (!*at) return true;
+  }
 }
 
 bool key_read_pixel(struct reading *reading, const struct node *node, struct cell *cell) {

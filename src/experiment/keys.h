@@ -16,6 +16,7 @@ bool key_read_iterations(struct reading *, const struct node *, struct cell *);
 bool key_read_runs(struct reading *, const struct node *, struct cell *);
 bool key_read_seed(struct reading *, const struct node *, struct cell *);
 bool key_read_direct(struct reading *, const struct node *, struct cell *);
+bool key_read_view(struct reading *, const struct node *, struct cell *);
 bool key_read_depth(struct reading *, const struct node *, struct cell *);
 bool key_read_pixel(struct reading *, const struct node *, struct cell *);
 bool key_read_probes(struct reading *, const struct node *, struct cell *);

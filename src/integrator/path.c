@@ -27,26 +27,30 @@ static void path_begin(void *data, uint64_t run) {
 }
 
 // Adds weight * throughput * rgb to the pixel of path j.
-static void add(const struct walk *walk, int j, double weight, const double rgb[3],
+static void add(const struct path *state, int j, double weight, const double rgb[3],
                 double *frame) {
+  const struct walk *walk = state->walk;
+  if (walk->kind[j] & state->measure->left_out) return;
   for (int c = 0; c < walk->n_channels; c++)
     frame[walk->owner[j] * walk->n_channels + c] += weight * walk->throughput[c][j] * rgb[c];
 }
 
 // Emission met by path j: all of it where next-event estimation could not have found it.
-static void add_emission(const struct walk *walk, int j, const struct surface *surface,
+static void add_emission(const struct path *state, int j, const struct surface *surface,
                          double *frame) {
+  const struct walk *walk = state->walk;
   if (walk->scene->shape[surface->shape].light == LIGHT_NONE) return;
   double emitted[3], weight = 1;
   struct vec d = walk->ray[j].d;
   eye_emitted(walk->scene, surface, vec_scale(d, -1), emitted);
   if (walk->pdf[j] > 0)
     weight = connect_mis_weight(walk->scene, surface, walk->from[j], d, walk->pdf[j]);
-  add(walk, j, weight, emitted, frame);
+  add(state, j, weight, emitted, frame);
 }
 
 // What the paths that hit nothing see.
-static void add_background(const struct walk *walk, double *frame) {
+static void add_background(const struct path *state, double *frame) {
+  const struct walk *walk = state->walk;
   const struct scene *scene = walk->scene;
   for (int j = 0; j < walk->n; j++) {
     if (walk->hit[j].primitive != PRIMITIVE_NONE) continue;
@@ -57,12 +61,15 @@ static void add_background(const struct walk *walk, double *frame) {
       light->type->background(scene, light, d, rgb);
       if (walk->pdf[j] > 0)
         weight = connect_mis_weight_background(scene, light, walk->from[j], d, walk->pdf[j]);
-      add(walk, j, weight, rgb, frame);
+      add(state, j, weight, rgb, frame);
     }
   }
 }
 
-static void connect(struct walk *walk, int j, const struct surface *at, const struct bsdf *bsdf) {
+static void connect(const struct path *state, int j, const struct surface *at,
+                    const struct bsdf *bsdf) {
+  struct walk *walk = state->walk;
+  if (light_path_after(walk->kind[j], false) & state->measure->left_out) return;
   struct connection connection = {.bsdf = bsdf,
                                   .p = at->p,
                                   .primitive = at->primitive,
@@ -75,8 +82,9 @@ static void connect(struct walk *walk, int j, const struct surface *at, const st
 }
 
 // At every hit: add what it emits, connect it to a light, scatter.
-static void meet(struct walk *walk, int depth, double *frame) {
-  bool last = walk->vertex >= depth;
+static void meet(const struct path *state, double *frame) {
+  struct walk *walk = state->walk;
+  bool last = walk->vertex >= state->measure->depth;
   int alive = 0;
   if (!last) {
     walk_vertex_random(walk);
@@ -86,11 +94,11 @@ static void meet(struct walk *walk, int depth, double *frame) {
   connect_begin(walk);
   for (int j = 0; j < walk->n; j++) {
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    add_emission(walk, j, &surface, frame);
+    add_emission(state, j, &surface, frame);
     if (last) continue;
     struct bsdf bsdf = walk_bsdf(walk, j, &surface);
     if (!bsdf.type) continue;
-    connect(walk, j, &surface, &bsdf);
+    connect(state, j, &surface, &bsdf);
     if (walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   connect_finish(walk, frame);
@@ -103,12 +111,6 @@ static uint64_t path_number(const struct measurement *measure, int j) {
   uint64_t replica = (uint64_t)(j % measure->n_replicas);
   uint64_t pixels = (uint64_t)camera->width * (uint64_t)camera->height;
   return eye_path(camera, measure->pixel[j]) + replica * pixels;
-}
-
-// Kernel, law and radius mean nothing here: estimators that differ in them get the same values.
-static void copy_to_others(const struct measurement *measure, long size, double *frame) {
-  for (int e = 1; e < measure->n_estimators; e++)
-    memcpy(frame + e * size, frame, (size_t)size * sizeof *frame);
 }
 
 static void path_step(void *data, uint64_t i, double *frame) {
@@ -126,12 +128,12 @@ static void path_step(void *data, uint64_t i, double *frame) {
     double *out = frame + (long)first * walk->n_channels;
     for (walk->vertex = 0; walk->n > 0 && walk->vertex <= measure->depth; walk->vertex++) {
       walk_trace_through(walk);
-      if (walk->features.background) add_background(walk, out);
+      if (walk->features.background) add_background(state, out);
       walk_drop_escaped(walk);
-      meet(walk, measure->depth, out);
+      meet(state, out);
     }
   }
-  copy_to_others(measure, size, frame);
+  measurement_copy(measure, frame);
 }
 
 const struct integrator_type integrator_path = {

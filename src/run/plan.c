@@ -54,6 +54,7 @@ struct measurement plan_measurement(const struct cell *cell, const struct scene 
                                 .n_replicas = 1,
                                 .footprint = cell->footprint,
                                 .nee = cell->direct == DIRECT_NEE,
+                                .left_out = cell->left_out,
                                 .depth = cell->depth,
                                 .n_emitted = cell->photons,
                                 .seed = cell->seed,

@@ -9,9 +9,9 @@
 
 char *reference_path(const struct group_plan *plan, const struct cell *cell, const char *directory,
                      struct arena *arena) {
-  char *key = arena_format(arena, "%s %016llx %s %d %d %.17g", photonlab_version,
+  char *key = arena_format(arena, "%s %016llx %s %d %d %x %.17g", photonlab_version,
                            (unsigned long long)plan->loaded->scene.hash, cell->reference_integrator,
-                           cell->depth, cell->footprint, cell->reference_se);
+                           cell->depth, cell->footprint, cell->left_out, cell->reference_se);
   for (int p = 0; p < plan->n_probes; p++)
     key = arena_format(arena, "%s %d,%d", key, plan->probe_pixel[p].x, plan->probe_pixel[p].y);
   return arena_format(arena, "%s/%s-%016llx.csv", directory, cell->scene,

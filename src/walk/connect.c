@@ -31,20 +31,31 @@ static bool sample_light(const struct walk *walk, const struct connection *from,
 
 void connect_begin(struct walk *walk) { walk->shadow.n = 0; }
 
+static void add_ray(struct walk *walk, const struct ray *ray, double distance, uint32_t emitter,
+                    const double value[3], int owner) {
+  struct shadow *shadow = &walk->shadow;
+  int k = shadow->n++;
+  shadow->ray[k] = *ray;
+  shadow->distance[k] = distance;
+  shadow->emitter[k] = emitter;
+  shadow->owner[k] = owner;
+  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] = value[c];
+}
+
+void connect_ray(struct walk *walk, const struct ray *ray, double distance, const double value[3],
+                 int owner) {
+  add_ray(walk, ray, distance, PRIMITIVE_NONE, value, owner);
+}
+
 void connect_add(struct walk *walk, const struct connection *from, double u_light,
                  const double u[2], bool mis) {
   struct light_sample sample;
   double value[3];
   if (walk->scene->n_lights == 0) return;
   if (!sample_light(walk, from, u_light, u, mis, &sample, value)) return;
-  struct shadow *shadow = &walk->shadow;
-  int k = shadow->n++;
   // Rounding may put the emitter a little before or behind the distance: search to the end.
-  shadow->ray[k] = (struct ray){from->p, sample.wi, INFINITY, from->primitive};
-  shadow->distance[k] = sample.distance;
-  shadow->emitter[k] = sample.primitive;
-  shadow->owner[k] = from->owner;
-  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] = value[c];
+  struct ray ray = {from->p, sample.wi, INFINITY, from->primitive};
+  add_ray(walk, &ray, sample.distance, sample.primitive, value, from->owner);
 }
 
 // A shadow ray sees the sampled point iff nothing is hit before it. The emitter itself ends the

@@ -1,5 +1,5 @@
 // Next-event estimation for a batch: one light sample a point, one shadow ray each.
-// Usage: connect_begin, connect_add for each point, connect_finish.
+// Usage: connect_begin, connect_add for each point (or connect_ray), connect_finish.
 #ifndef WALK_CONNECT_H
 #define WALK_CONNECT_H
 
@@ -22,6 +22,10 @@ void connect_begin(struct walk *);
 // light, u the point on it. At most WALK_BATCH points.
 void connect_add(struct walk *, const struct connection *, double u_light, const double u[2],
                  bool mis);
+
+// A shadow ray of one's own: `value` arrives if nothing is hit before `distance`.
+void connect_ray(struct walk *, const struct ray *, double distance, const double value[3],
+                 int owner);
 
 // Adds what is not blocked to sum[owner * n_channels + c]. Surfaces that let rays pass attenuate.
 void connect_finish(struct walk *, double *sum);

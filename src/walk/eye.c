@@ -28,6 +28,7 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
     walk_start(walk, j, camera_ray(camera, x, y, lens ? u : NULL));
     walk->owner[j] = j;
     walk->pdf[j] = 0;
+    walk->kind[j] = LIGHT_PATH_EMITTED;
     for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] = 1;
   }
 }

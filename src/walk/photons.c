@@ -19,6 +19,7 @@ static void photons_reserve(struct photons *photons, int64_t more, struct arena 
   for (int c = 0; c < photons->n_channels; c++)
     photons->flux[c] = grown(arena, photons->flux[c], count, capacity, sizeof(double));
   photons->vertex = grown(arena, photons->vertex, count, capacity, sizeof(uint16_t));
+  photons->kind = grown(arena, photons->kind, count, capacity, sizeof(uint8_t));
   photons->capacity = capacity;
 }
 
@@ -30,8 +31,7 @@ struct pass {
   struct arena *arena;
 };
 
-// Emission: one ray a path, with the flux that the choice of its light leaves it.
-static void emit(struct walk *walk) {
+void photons_emit(struct walk *walk) {
   const struct scene *scene = walk->scene;
   walk->transport = TRANSPORT_IMPORTANCE;
   walk_random(walk, 1, PAIR_POSITION);
@@ -43,6 +43,7 @@ static void emit(struct walk *walk) {
     struct emission emission;
     light->type->emit(scene, light, u, &emission);
     walk_start(walk, j, emission.ray);
+    walk->kind[j] = LIGHT_PATH_DIRECT;
     for (int c = 0; c < walk->n_channels; c++)
       walk->throughput[c][j] = emission.flux[c] / light->probability;
   }
@@ -69,6 +70,7 @@ static void store(const struct walk *walk, int j, const struct pass *pass,
   photons->wi[at] = wi;
   for (int c = 0; c < walk->n_channels; c++) photons->flux[c][at] = walk->throughput[c][j];
   photons->vertex[at] = walk->vertex < UINT16_MAX ? (uint16_t)walk->vertex : UINT16_MAX;
+  photons->kind[at] = walk->kind[j];
 }
 
 // A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
@@ -110,7 +112,7 @@ void photons_trace(struct walk *walk, const struct photon_pass *of,
     uint64_t left = of->n_emitted - first;
     walk->n = left < WALK_BATCH ? (int)left : WALK_BATCH;
     for (int j = 0; j < walk->n; j++) walk->path[j] = first + (uint64_t)j;
-    emit(walk);
+    photons_emit(walk);
     for (walk->vertex = 0; walk->n > 0 && walk->vertex < of->depth; walk->vertex++) {
       walk_trace(walk);
       while (walk->crossing.n > 0) {

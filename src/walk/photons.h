@@ -12,6 +12,7 @@ struct photons {
   struct vec *wi;  // towards where it came from, unit length
   double *flux[3]; // W, not divided by n_emitted
   uint16_t *vertex; // scatterings on its way; 65535 for more
+  uint8_t *kind;    // enum light_path: what an eye that looks here completes
 };
 
 struct photon_pass {
@@ -26,6 +27,10 @@ struct photon_filter {
   bool (*keep)(const void *data, struct vec p);
   const void *data;
 };
+
+// Emission of the paths walk->path[0..n - 1]: one ray each, with the flux that the choice of its
+// light leaves it.
+void photons_emit(struct walk *);
 
 // One pass: walk->key and walk->iteration are set by the caller; photons is emptied first
 // and grows in the arena. Zeroed photons are ready for use.

@@ -40,6 +40,7 @@ struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct f
   walk->from = arena_new(arena, struct vec, WALK_BATCH);
   walk->pdf = arena_new(arena, double, WALK_BATCH);
   walk->owner = arena_new(arena, int, WALK_BATCH);
+  walk->kind = arena_new(arena, uint8_t, WALK_BATCH);
   for (int c = 0; c < walk->n_channels; c++)
     walk->throughput[c] = arena_new(arena, double, WALK_BATCH);
   for (int slot = 0; slot < 4; slot++)
@@ -76,6 +77,7 @@ void walk_move(struct walk *walk, int to, int from) {
   walk->from[to] = walk->from[from];
   walk->pdf[to] = walk->pdf[from];
   walk->owner[to] = walk->owner[from];
+  walk->kind[to] = walk->kind[from];
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
 
@@ -177,5 +179,6 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= sample.weight[c] / divisor;
   walk_start(walk, j, (struct ray){surface->p, sample.wi, INFINITY, surface->primitive});
   walk->pdf[j] = sample.pdf;
+  walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], sample.pdf == 0);
   return true;
 }

@@ -7,6 +7,7 @@
 #include "bvh/view.h"
 #include "numeric/rng.h"
 #include "scene/scene.h"
+#include "walk/light_path.h"
 
 enum { WALK_BATCH = 4096 };
 
@@ -30,6 +31,7 @@ struct walk {
   double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: next-event
                          // estimation cannot find what it meets (delta lobe, camera)
   int *owner;            // eye paths: the point this path belongs to
+  uint8_t *kind;         // enum light_path: what an emitter (photons: an eye) here completes
 
   double *u[4][2]; // scratch: pairs of random numbers
   struct shadow {  // scratch of connect_lights, [WALK_BATCH] each
@@ -91,7 +93,7 @@ void walk_move(struct walk *, int to, int from);
 
 // Samples the bsdf with u[0] (direction) and u[1] (choice, roulette) of path j. Roulette survives
 // with the largest channel of the weight, the scaling of radiance by refraction left out.
-// False: absorbed. True: ray, from, throughput and pdf are those of the next segment.
+// False: absorbed. True: ray, from, throughput, pdf and kind are those of the next segment.
 bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsdf *);
 
 #endif

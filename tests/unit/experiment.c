@@ -4,6 +4,8 @@
 #include "experiment/experiment.h"
 #include "base/file.h"
 #include "numeric/rng.h"
+#include "experiment/cell_keys.h"
+#include "walk/light_path.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -253,6 +255,7 @@ static void every_key_that_crosses_takes_a_list(void **state) {
                                        {"runs", "[1, 2]"},
                                        {"seed", "[1, two]"},
                                        {"direct", "[photons, nee]"},
+                                       {"view", "[direct, caustics+indirect]"},
                                        {"depth", "[1, 2]"},
                                        {"pixel", "[centre, footprint]"}};
   int n_crossing = 0;
@@ -261,6 +264,30 @@ static void every_key_that_crosses_takes_a_list(void **state) {
   assert_int_equal(n_crossing, n_rows + 2); // scene and radius stand in the base
   for (int j = 0; j < n_rows; j++)
     assert_int_equal(read_text(arena_format(&arena, "%s: %s\n", row[j][0], row[j][1])).n_cells, 2);
+}
+
+static void a_view_is_all_or_a_sum(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    unsigned left_out;
+    const char *shown;
+  } row[] = {
+      {"all", 0, "all"},
+      {"emitted+direct+caustics+indirect", 0, "all"},
+      {"caustics", LIGHT_PATH_ALL - LIGHT_PATH_CAUSTICS, "caustics"},
+      {"indirect+emitted", LIGHT_PATH_DIRECT | LIGHT_PATH_CAUSTICS, "emitted+indirect"},
+      {"emitted+caustics+indirect", LIGHT_PATH_DIRECT, "emitted+caustics+indirect"},
+  };
+  for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
+    struct cell cell = read_text(arena_format(&arena, "view: %s\n", row[j].text)).cell[0];
+    assert_int_equal(cell.left_out, row[j].left_out);
+    for (int k = 0; k < CELL_KEYS; k++) {
+      char buffer[CELL_KEY_SIZE];
+      if (strcmp(cell_keys[k].name, "view") == 0)
+        assert_string_equal(cell_keys[k].text(&cell, 17, buffer), row[j].shown);
+    }
+  }
 }
 
 struct expected_cell {
@@ -342,6 +369,7 @@ static void every_key_that_changes_the_paths_splits_the_group(void **state) {
       "direct: nee",       "seed: other",      "runs: 7",
       "iterations: 7",     "probes: [[3, 4]]", "probes: [[1, 2], [3, 4]]",
       "images: [3]",       "pixel: footprint", "integrator: path",
+      "view: direct",
   };
   static const char *const shared[] = {"quantity: bias", "reference: none", "alpha: 0.1",
                                        "radius: 3"};
@@ -381,7 +409,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 20);
+  assert_int_equal(n_experiment_keys, 21);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);
@@ -405,6 +433,7 @@ int main(void) {
       cmocka_unit_test(a_radius_is_needed_only_where_photons_are_gathered),
       cmocka_unit_test(lists_cross_in_the_order_of_the_table),
       cmocka_unit_test(every_key_that_crosses_takes_a_list),
+      cmocka_unit_test(a_view_is_all_or_a_sum),
       cmocka_unit_test(parts_inherit_and_their_own_values_win),
       cmocka_unit_test(quality_paper_replaces_at_the_top_and_in_a_part),
       cmocka_unit_test(cells_that_differ_only_in_the_estimator_share_a_photon_pass),

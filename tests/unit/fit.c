@@ -98,6 +98,7 @@ static const struct key row_keys[] = {{"cell", COUNT},
                                       {"runs", COUNT},
                                       {"seed", STRING},
                                       {"direct", STRING},
+                                      {"view", STRING},
                                       {"depth", COUNT},
                                       {"pixel", STRING},
                                       {"quantity", STRING},
@@ -377,6 +378,7 @@ static void test_table_tells_cells_apart(void **state) {
   other[k++].kernel = kernel_find("cone"), other[k++].law = law_find("power");
   other[k++].alpha = 0.66667, other[k++].radius = 1.0000005, other[k++].photons++;
   other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
+  other[k++].left_out = 1;
   other[k++].depth++, other[k++].footprint = true;
   assert_int_equal(k, CELL_KEYS);
   fit.row[1] = fit.row[0];

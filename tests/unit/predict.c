@@ -3,6 +3,7 @@
 #define _GNU_SOURCE // mkstemp
 #include "analysis/prediction.h"
 #include "tests/light_fixture.h"
+#include "walk/light_path.h"
 
 #include <math.h>
 
@@ -207,6 +208,8 @@ static void test_refusals(void **state) {
   assert_false(has_closed_form(UNIFORM UNIFORM, cell, probe));     // two lights
   struct cell other = cell;
   other.direct = DIRECT_NEE;
+  assert_false(has_closed_form(UNIFORM, other, probe));
+  other = cell, other.left_out = LIGHT_PATH_EMITTED;
   assert_false(has_closed_form(UNIFORM, other, probe));
   other = cell, other.footprint = true;
   assert_false(has_closed_form(UNIFORM, other, probe));
