@@ -127,10 +127,10 @@ static const struct scene *shared_scene(struct shared *shared, const struct resu
   return &known->scene;
 }
 
-// Radii that follow the photons found do so, in expectation, as Knaus and Zwicker's (theory 2.4).
+// Radii that follow the photons found do so as their law's closed form, but for a constant that
+// tends to one with the photons in the first disc (theory 2.4).
 static const struct law *law_of(const struct cell *cell) {
-  if (!cell->integrator->photons) return NULL;
-  return cell->integrator->independent ? cell->law : law_find("knaus-zwicker");
+  return cell->integrator->photons ? cell->law : NULL;
 }
 
 static const struct family *shared_family(struct shared *shared, const struct cell *cell,

@@ -59,7 +59,8 @@ static const struct option options[] = {
     {"quiet", NULL, NULL, "no progress", take_quiet},
     {"no-skip", "NAMES", NULL, "do not skip: all, or names of 'photonlab list skips'",
      take_no_skip},
-    {"lenient", NULL, NULL, "leave displacement, normal maps and the like out, and say so", take_lenient},
+    {"lenient", NULL, NULL, "leave displacement, normal maps and the like out, and say so",
+     take_lenient},
     {"quality", "NAME", NULL, "default or paper", take_quality},
     {"seed", "SEED", "seed", "a number, or a name that is hashed", NULL},
     {"integrator", "NAME", "integrator", "see 'photonlab list integrators'", NULL},
@@ -74,6 +75,7 @@ static const struct option options[] = {
     {"view", "PATHS", "view", "all, or a sum of emitted, direct, caustics, indirect", NULL},
     {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt", NULL},
     {"pixel", "WHERE", "pixel", "centre or footprint", NULL},
+    {"hit-points", "N", "hit-points", "ppm: points of its one eye pass in each pixel", NULL},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 

@@ -31,7 +31,7 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   int64_t photons = file->photons ? file->photons : 65536, seed = file->seed < 0 ? 0 : file->seed;
   int64_t iterations = file->iterations ? file->iterations : file->spp;
   say(&said, cli, "integrator", or (file->integrator, "path"));
-  say(&said, cli, "law", or (file->law, "knaus-zwicker"));
+  say(&said, cli, "law", file->law);
   say(&said, cli, "kernel", or (file->kernel, "box"));
   say(&said, cli, "alpha", or (number(arena, file->alpha), "2/3"));
   say(&said, cli, "radius", number(arena, file->radius));
@@ -41,9 +41,12 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   say(&said, cli, "direct", or (file->direct, "photons"));
   say(&said, cli, "view", "all");
   say(&said, cli, "depth", arena_format(arena, "%d", file->max_depth));
+  say(&said, cli, "hit-points", "1");
   say(&said, cli, "pixel", file->centre ? "centre" : "footprint");
   *cell = (struct cell){.radius = NAN, .runs = 1, .scene = file_base_name(scene->path, arena)};
-  return cli_apply(&said, cell, problem) && cli_apply(cli, cell, problem);
+  if (!cli_apply(&said, cell, problem) || !cli_apply(cli, cell, problem)) return false;
+  if (!cell->law) cell->law = cell_default_law(cell);
+  return true;
 }
 
 static bool measure_film(const struct cell *cell, const struct scene *scene, const struct cli *cli,
@@ -98,6 +101,7 @@ static int render(struct cli *cli, struct problem *problem) {
 
 const struct command command_render = {
     "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
-    "output integrator spp iterations photons radius alpha kernel law direct view maxdepth pixel seed "
+    "output integrator spp iterations photons radius alpha kernel law direct view maxdepth pixel "
+    "hit-points seed "
     "threads quiet no-skip lenient",
     render};

@@ -1,22 +1,39 @@
 // Local statistics (Hachisuka, Ogaki, Jensen 2008): each point of each estimator has a radius and a
 // count of its own, which only the photons found there change. The flux rule tau (r'^2 / r^2) makes
-// the estimate the average of what each pass alone estimates (theory 2.4), so a pass gives just that.
+// the estimate the average of what each pass alone estimates (theory 2.4), so a pass gives just
+// that.
+//
+// A pass works in parallel on measure->threads: photons by batches, points apart. Nothing a thread
+// does depends on how many there are, and a point's sums on no other point, so neither does a bit.
 #ifndef ESTIMATE_LOCAL_H
 #define ESTIMATE_LOCAL_H
 
 #include "estimate/photon_map.h"
 
+// Grids of edge r1, r1/2, r1/4, ... (r1: the largest of the estimators); a point asks the finest
+// that is not below its radius. Cells of 2^-14 r1 can still be counted wherever r1 can
+// (grid_radius_is_resolved).
+enum { LOCAL_LEVELS = 15 };
+
 struct local {
-  double *r2, *n; // [point * n_estimators + estimator]
-  double *r;      // scratch, [n_estimators]
-  int64_t *found; // scratch, [n_estimators]
+  struct photon_map *map;
+  double *r2, *n;       // [point * n_estimators + estimator]
+  unsigned char *level; // [point], of the grid
+  bool used[LOCAL_LEVELS];
+  struct grid grid[LOCAL_LEVELS];
+  bool fixed, seen; // every eye pass is the same; there was one
+  int n_workers;
+  struct local_worker *worker;
 };
 
-struct local local_new(const struct measurement *, struct arena *);
-void local_begin(struct local *, const struct measurement *);
+struct local *local_new(const struct measurement *, struct arena *);
+void local_begin(struct local *, uint64_t run);
+
+// The eye pass of iteration i; 0: one before all iterations, for each of the map's sets.
+void local_see(struct local *, uint64_t i);
 
 // Photon pass i around the map's points, its estimates into the frame, then the law. A law without
 // local statistics follows i alone.
-void local_pass(struct local *, struct photon_map *, uint64_t i, double *frame);
+void local_pass(struct local *, uint64_t i, double *frame);
 
 #endif

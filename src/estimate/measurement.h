@@ -29,6 +29,7 @@ struct measurement {
   int n_points;
   int n_replicas;     // path: this many points in a row are samples of one pixel, each with
                       // random numbers of its own; at least 1
+  int hit_points;     // ppm: this many points of one eye pass a pixel; 0: one
   bool footprint;     // a new uniform position in the pixel each iteration, else its centre
   bool nee;           // direct light by next-event estimation instead of photons
   int depth;          // pbrt's maxdepth
@@ -38,9 +39,11 @@ struct measurement {
   int n_estimators;
   unsigned skip_off; // bits of enum skip: what is not to be skipped
   unsigned left_out; // bits of enum light_path: what is not to be seen; 0: all is
+  int threads;       // that one iteration may use, where iterations depend on each other; 0: one
 };
 
-// Kernel, law and radius mean nothing to some integrators: all estimators get the first one's frame.
+// Kernel, law and radius mean nothing to some integrators: all estimators get the first one's
+// frame.
 static inline void measurement_copy(const struct measurement *measure, double *frame) {
   long size = (long)measure->n_points * measure->features.n_channels;
   for (int e = 1; e < measure->n_estimators; e++)

@@ -8,6 +8,7 @@
 struct photon_map *photon_map_new(const struct measurement *measure, struct arena *arena) {
   struct photon_map *map = arena_new(arena, struct photon_map, 1);
   map->measure = measure;
+  map->sets = 1;
   map->arena = arena;
   map->gather.left_out = measure->left_out;
   map->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
@@ -29,25 +30,24 @@ void photon_map_see(struct photon_map *map, uint64_t i) {
             map->point);
 }
 
-// Whether photons elsewhere are left out; then marks where the points are.
-static bool mark_seen(struct photon_map *map, double r) {
+const struct photon_filter *photon_map_filter(struct photon_map *map, double r) {
   const struct measurement *measure = map->measure;
-  if (measure->n_points > PHOTON_MAP_FEW || (measure->skip_off & SKIP_UNSEEN)) return false;
+  if (measure->n_points > PHOTON_MAP_FEW || (measure->skip_off & SKIP_UNSEEN)) return NULL;
   int n = 0;
   for (int j = 0; j < measure->n_points; j++)
     if (map->point[j].hit) map->seen_point[n++] = map->point[j].p;
   grid_seen_mark(&map->seen, map->seen_point, n, r);
-  return true;
+  map->filter = (struct photon_filter){grid_seen_keep, &map->seen};
+  return &map->filter;
 }
 
 void photon_map_emit(struct photon_map *map, uint64_t i, double r) {
   const struct measurement *measure = map->measure;
-  struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0};
-  struct photon_filter filter = {grid_seen_keep, &map->seen};
-  bool few = mark_seen(map, r);
+  struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
+  const struct photon_filter *filter = photon_map_filter(map, r);
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
   walk_begin(map->walk, measure->seed, map->run, i);
-  photons_trace(map->walk, &pass, few ? &filter : NULL, &map->photons, map->arena);
+  photons_trace(map->walk, &pass, filter, &map->photons, map->arena);
   grid_build(&map->grid, &map->photons, r, map->arena);
 }
 
@@ -69,9 +69,13 @@ void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *
 static void connect_points(struct photon_map *map, int first, int n) {
   const struct measurement *measure = map->measure;
   struct walk *walk = map->walk;
+  const struct camera *camera = &walk->scene->camera;
+  uint64_t pixels = (uint64_t)camera->width * (uint64_t)camera->height;
   walk->n = n;
-  for (int j = 0; j < n; j++)
-    walk->path[j] = eye_path(&walk->scene->camera, measure->pixel[first + j]);
+  for (int j = 0; j < n; j++) {
+    uint64_t set = (uint64_t)((first + j) / (measure->n_points / map->sets));
+    walk->path[j] = eye_path(camera, measure->pixel[first + j]) + set * pixels;
+  }
   walk_random(walk, 2, pair_of_vertex(0, VERTEX_LIGHT));
   walk_random(walk, 3, pair_of_vertex(0, VERTEX_EMITTER));
   connect_begin(walk);

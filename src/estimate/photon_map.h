@@ -15,12 +15,14 @@ struct photon_map {
   struct walk *walk;
   uint64_t run;
   struct eye_point *point; // [measure->n_points]
+  int sets;                // ppm: the points are this many sets, each of all pixels; else 1
   struct photons photons;
   double *c; // [n_estimators] psi(0) of the kernel
   struct grid grid;
   struct gather gather;
   struct disc *disc; // [n_estimators] scratch
   struct grid_seen seen;
+  struct photon_filter filter; // by `seen`
   struct vec seen_point[PHOTON_MAP_FEW];
   double *direct; // [n_points * n_channels], next-event estimation only
 };
@@ -29,6 +31,10 @@ struct photon_map *photon_map_new(const struct measurement *, struct arena *);
 
 // The eye pass of iteration i; i = 0: one before all iterations.
 void photon_map_see(struct photon_map *, uint64_t i);
+
+// Which photons a gather of radius up to r around the points may find; NULL: any. Holds until the
+// next call.
+const struct photon_filter *photon_map_filter(struct photon_map *, double r);
 
 // The photon pass of iteration i, made ready for radii up to r.
 void photon_map_emit(struct photon_map *, uint64_t i, double r);

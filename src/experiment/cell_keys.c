@@ -34,6 +34,7 @@ KEY(iterations, count(cell->iterations, buffer))
 KEY(runs, count(cell->runs, buffer))
 KEY(direct, cell->direct == DIRECT_NEE ? "nee" : "photons")
 KEY(depth, count((uint64_t)cell->depth, buffer))
+KEY(hit_points, count(cell->hit_points, buffer))
 KEY(pixel, cell->footprint ? "footprint" : "centre")
 
 // A sum of names, as a file may give it.
@@ -73,4 +74,5 @@ const struct cell_key cell_keys[CELL_KEYS] = {
     {"view", KEY_NAME, false, key_view},
     {"depth", KEY_COUNT, false, key_depth},
     {"pixel", KEY_NAME, false, key_pixel},
+    {"hit-points", KEY_COUNT, false, key_hit_points},
 };

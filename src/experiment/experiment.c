@@ -9,7 +9,8 @@ const struct experiment_key experiment_keys[] = {
     {"title", "(the file's name)", "one line for tables and figures", false, NULL},
     {"scene", "(required)", "pbrt-v4 file, from the working directory", true, key_read_scene},
     {"integrator", "probabilistic", "what one iteration computes", true, key_read_integrator},
-    {"law", "knaus-zwicker", "radius law", true, key_read_law},
+    {"law", "(the integrator's)", "radius law; ppm, sppm: hachisuka, else knaus-zwicker", true,
+     key_read_law},
     {"kernel", "box", "kernel", true, key_read_kernel},
     {"alpha", "2/3", "parameter of the law, in [0, 1]; a number or a ratio", true, key_read_alpha},
     {"radius", "(required)", "support at i = 1, scene units", true, key_read_radius},
@@ -24,6 +25,7 @@ const struct experiment_key experiment_keys[] = {
     {"depth", "64", "pbrt's maxdepth", true, key_read_depth},
     {"pixel", "centre", "centre, or footprint: uniform in the pixel, new each iteration", true,
      key_read_pixel},
+    {"hit-points", "1", "ppm: points of its one eye pass in each pixel", true, key_read_hit_points},
     {"probes", "(a fixed 3x3 grid)", "pixels [[x, y], ...] from the top left", false,
      key_read_probes},
     {"quantity", "(variance and bias)", "what is fitted: variance, bias, both or none", false,
@@ -166,6 +168,11 @@ static bool check_scene_names(struct reader *reader, const struct level *level,
   return true;
 }
 
+const struct law *cell_default_law(const struct cell *cell) {
+  const char *name = cell->integrator->law;
+  return law_find(name ? name : "knaus-zwicker");
+}
+
 static bool add_cell(struct reader *reader, const struct level *level, const int *choice) {
   struct experiment *experiment = reader->experiment;
   struct cell cell = {.number = experiment->n_cells,
@@ -179,6 +186,7 @@ static bool add_cell(struct reader *reader, const struct level *level, const int
     if (experiment_keys[k].read && node && !experiment_keys[k].read(&reader->reading, node, &cell))
       return false;
   }
+  if (!cell.law) cell.law = cell_default_law(&cell);
   if (!check_cell(reader, level, &cell) || !check_scene_names(reader, level, &cell)) return false;
   experiment->cell[experiment->n_cells++] = cell;
   return true;

@@ -25,7 +25,7 @@ struct cell {
   const char *scene;       // base name without extension
   const struct integrator_type *integrator;
   const struct kernel *kernel;
-  const struct law *law;
+  const struct law *law;   // NULL while being read: the integrator's default
   double alpha;            // in [0, 1]
   double radius;           // support at i = 1, scene units, > 0
   uint64_t photons;        // emitted per iteration, >= 1
@@ -33,6 +33,7 @@ struct cell {
   uint64_t seed;
   struct pixel *probe;     // NULL: default, a fixed 3x3 grid of pixels
   int n_probes;            // 0: default
+  uint64_t hit_points;     // ppm: of one eye pass in each pixel, >= 1
   bool footprint;          // pixel: footprint (true) or centre
   enum direct direct;
   unsigned left_out;       // bits of enum light_path that are not seen; 0: all are
@@ -43,6 +44,9 @@ struct cell {
   const char *reference_integrator; // "path", "analytic" or "none"
   double reference_se;     // absolute target standard error of the reference, radiance; 0: none needed
 };
+
+// The law where none is said.
+const struct law *cell_default_law(const struct cell *);
 
 struct experiment {
   const char *path, *name, *title, *quality; // name: base name without extension

@@ -74,6 +74,10 @@ bool key_read_runs(struct reading *reading, const struct node *node, struct cell
   return value_count(reading, node, 1, most_runs, &cell->runs);
 }
 
+bool key_read_hit_points(struct reading *reading, const struct node *node, struct cell *cell) {
+  return value_count(reading, node, 1, INT_MAX, &cell->hit_points);
+}
+
 bool key_read_depth(struct reading *reading, const struct node *node, struct cell *cell) {
   uint64_t depth;
   if (!value_count(reading, node, 0, INT_MAX, &depth)) return false;

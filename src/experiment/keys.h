@@ -19,6 +19,7 @@ bool key_read_direct(struct reading *, const struct node *, struct cell *);
 bool key_read_view(struct reading *, const struct node *, struct cell *);
 bool key_read_depth(struct reading *, const struct node *, struct cell *);
 bool key_read_pixel(struct reading *, const struct node *, struct cell *);
+bool key_read_hit_points(struct reading *, const struct node *, struct cell *);
 bool key_read_probes(struct reading *, const struct node *, struct cell *);
 bool key_read_quantity(struct reading *, const struct node *, struct cell *);
 bool key_read_images(struct reading *, const struct node *, struct cell *);

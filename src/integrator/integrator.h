@@ -12,7 +12,10 @@
 struct integrator_type {
   const char *name, *about, *source;
   bool photons;     // uses kernel, law, radius and photons
-  bool independent; // iterations are independent of each other: any order, any split
+  bool independent; // iterations are independent of each other: any order, any split; else
+                    // i = 1, 2, ... after begin
+  const char *law; // the default; NULL: knaus-zwicker
+  bool one_eye_pass; // eye points are drawn once a run and stay
   // State for one thread. The measurement must outlive it.
   void *(*create)(const struct measurement *, struct arena *);
   void (*begin)(void *state, uint64_t run); // k = 1, 2, ...; references take 0

@@ -52,6 +52,7 @@ struct measurement plan_measurement(const struct cell *cell, const struct scene 
                                 .bvh = bvh,
                                 .features = scene_features(scene),
                                 .n_replicas = 1,
+                                .hit_points = (int)cell->hit_points,
                                 .footprint = cell->footprint,
                                 .nee = cell->direct == DIRECT_NEE,
                                 .left_out = cell->left_out,
@@ -81,10 +82,39 @@ struct pixel *plan_film(const struct scene *scene, int *n_points, struct arena *
 // grid.
 enum { MOST_PHOTONS = 1 << 26 };
 
+// What a law and an integrator ask of each other and of the scene.
+static bool check_law(const struct cell *cell, struct problem *problem) {
+  const struct law *law = cell->law;
+  if (law->count && cell->integrator->independent)
+    return problem_set(problem,
+                       "law %s follows the photons found by the iterations before, but those of "
+                       "integrator %s are independent: take ppm or sppm, or law knaus-zwicker",
+                       law->name, cell->integrator->name);
+  if (law->rho(cell->alpha, 2) == 0)
+    return problem_set(problem, "law %s at alpha = %g: the second radius is zero", law->name,
+                       cell->alpha);
+  return true;
+}
+
+static bool check_points(const struct cell *cell, const struct scene *scene,
+                         struct problem *problem) {
+  if (!cell->integrator->one_eye_pass) return true;
+  uint64_t pixels = (uint64_t)scene->camera.width * (uint64_t)scene->camera.height;
+  if (cell->hit_points > INT_MAX / pixels)
+    return problem_set(problem, "hit-points: %" PRIu64 " in each of %d x %d pixels are too many",
+                       cell->hit_points, scene->camera.width, scene->camera.height);
+  if (!scene_features(scene).motion) return true;
+  return problem_set(problem,
+                     "%s: something moves, but integrator %s draws its points once, and photons of "
+                     "other times do not belong to them: take sppm or probabilistic",
+                     scene->path, cell->integrator->name);
+}
+
 bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
                     struct problem *problem) {
   *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
   if (!cell->integrator->photons) return true;
+  if (!check_law(cell, problem) || !check_points(cell, scene, problem)) return false;
   if (cell->photons > MOST_PHOTONS)
     return problem_set(problem,
                        "photons: %" PRIu64 " at once do not fit into memory; more iterations of "

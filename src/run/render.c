@@ -4,7 +4,6 @@
 #include "run/picture.h"
 #include "run/progress.h"
 
-#include <assert.h>
 #include <omp.h>
 
 enum { ITERATIONS_PER_THREAD = 4 }; // computed before they are merged in order
@@ -37,8 +36,10 @@ static void expose(struct image *image, double exposure, long n) {
 bool render_image(const struct integrator_type *integrator, const struct measurement *measure,
                   uint64_t iterations, struct run_options options, struct arena *arena,
                   struct image *image) {
-  assert(integrator->independent);
-  int threads = plan_threads(&options);
+  // Iterations that depend on each other are computed in order, each by all threads.
+  struct measurement own_measure = *measure;
+  int threads = integrator->independent ? plan_threads(&options) : 1;
+  own_measure.threads = integrator->independent ? 1 : plan_threads(&options);
   int round = threads * ITERATIONS_PER_THREAD;
   if ((uint64_t)round > iterations) round = (int)iterations;
   long size = (long)measure->n_points * measure->features.n_channels;
@@ -50,7 +51,7 @@ bool render_image(const struct integrator_type *integrator, const struct measure
                *kept = arena_new(arena, struct arena, threads);
   for (int t = 0; t < threads; t++) {
     own[t] = kept[t] = arena_reserve();
-    state[t] = integrator->create(measure, &own[t]);
+    state[t] = integrator->create(&own_measure, &own[t]);
     integrator->begin(state[t], 1);
   }
   interrupt_install();

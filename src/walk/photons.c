@@ -23,6 +23,21 @@ static void photons_reserve(struct photons *photons, int64_t more, struct arena 
   photons->capacity = capacity;
 }
 
+void photons_append(struct photons *photons, const struct photons *more, struct arena *arena) {
+  int64_t at = photons->count;
+  size_t n = (size_t)more->count;
+  photons->n_channels = more->n_channels;
+  photons_reserve(photons, more->count, arena);
+  if (n == 0) return;
+  memcpy(photons->position + at, more->position, n * sizeof *more->position);
+  memcpy(photons->wi + at, more->wi, n * sizeof *more->wi);
+  for (int c = 0; c < more->n_channels; c++)
+    memcpy(photons->flux[c] + at, more->flux[c], n * sizeof *more->flux[c]);
+  memcpy(photons->vertex + at, more->vertex, n * sizeof *more->vertex);
+  memcpy(photons->kind + at, more->kind, n * sizeof *more->kind);
+  photons->count += more->count;
+}
+
 // What one call of photons_trace is about.
 struct pass {
   const struct photon_pass *of;
@@ -108,7 +123,7 @@ void photons_trace(struct walk *walk, const struct photon_pass *of,
   photons->count = 0;
   photons->n_channels = walk->n_channels;
   if (walk->scene->n_lights == 0) return;
-  for (uint64_t first = 0; first < of->n_emitted; first += WALK_BATCH) {
+  for (uint64_t first = of->first; first < of->n_emitted; first += WALK_BATCH) {
     uint64_t left = of->n_emitted - first;
     walk->n = left < WALK_BATCH ? (int)left : WALK_BATCH;
     for (int j = 0; j < walk->n; j++) walk->path[j] = first + (uint64_t)j;

@@ -9,8 +9,8 @@ struct photons {
   int64_t count, capacity;
   int n_channels;
   struct vec *position;
-  struct vec *wi;  // towards where it came from, unit length
-  double *flux[3]; // W, not divided by n_emitted
+  struct vec *wi;   // towards where it came from, unit length
+  double *flux[3];  // W, not divided by n_emitted
   uint16_t *vertex; // scatterings on its way; 65535 for more
   uint8_t *kind;    // enum light_path: what an eye that looks here completes
 };
@@ -19,6 +19,8 @@ struct photon_pass {
   uint64_t n_emitted;
   int depth;        // pbrt's maxdepth: the most scatterings, the one towards the eye included
   int first_vertex; // 1: the first surface is left to next-event estimation; else 0
+  uint64_t first;   // paths before are left out: a multiple of WALK_BATCH, so that parts of a pass
+                    // put together are the pass
 };
 
 // Which photons are worth storing (NULL: all). A pure function of the position that keeps every
@@ -36,5 +38,8 @@ void photons_emit(struct walk *);
 // and grows in the arena. Zeroed photons are ready for use.
 void photons_trace(struct walk *, const struct photon_pass *, const struct photon_filter *,
                    struct photons *, struct arena *);
+
+// Puts the photons of another part of the pass behind these.
+void photons_append(struct photons *, const struct photons *more, struct arena *);
 
 #endif

@@ -3,8 +3,8 @@
 #define _GNU_SOURCE // mkdtemp
 #include "experiment/experiment.h"
 #include "base/file.h"
-#include "numeric/rng.h"
 #include "experiment/cell_keys.h"
+#include "numeric/rng.h"
 #include "walk/light_path.h"
 
 #include <setjmp.h>
@@ -257,7 +257,8 @@ static void every_key_that_crosses_takes_a_list(void **state) {
                                        {"direct", "[photons, nee]"},
                                        {"view", "[direct, caustics+indirect]"},
                                        {"depth", "[1, 2]"},
-                                       {"pixel", "[centre, footprint]"}};
+                                       {"pixel", "[centre, footprint]"},
+                                       {"hit-points", "[1, 2]"}};
   int n_crossing = 0;
   for (int k = 0; k < n_experiment_keys; k++) n_crossing += experiment_keys[k].crosses;
   int n_rows = sizeof row / sizeof *row;
@@ -369,7 +370,7 @@ static void every_key_that_changes_the_paths_splits_the_group(void **state) {
       "direct: nee",       "seed: other",      "runs: 7",
       "iterations: 7",     "probes: [[3, 4]]", "probes: [[1, 2], [3, 4]]",
       "images: [3]",       "pixel: footprint", "integrator: path",
-      "view: direct",
+      "view: direct",      "hit-points: 3",
   };
   static const char *const shared[] = {"quantity: bias", "reference: none", "alpha: 0.1",
                                        "radius: 3"};
@@ -409,7 +410,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 21);
+  assert_int_equal(n_experiment_keys, 22);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);

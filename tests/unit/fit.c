@@ -101,6 +101,7 @@ static const struct key row_keys[] = {{"cell", COUNT},
                                       {"view", STRING},
                                       {"depth", COUNT},
                                       {"pixel", STRING},
+                                      {"hit-points", COUNT},
                                       {"quantity", STRING},
                                       {"rate_theory", NUMBER},
                                       {"rate", NUMBER},
@@ -379,7 +380,7 @@ static void test_table_tells_cells_apart(void **state) {
   other[k++].alpha = 0.66667, other[k++].radius = 1.0000005, other[k++].photons++;
   other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
   other[k++].left_out = 1;
-  other[k++].depth++, other[k++].footprint = true;
+  other[k++].depth++, other[k++].footprint = true, other[k++].hit_points = 4;
   assert_int_equal(k, CELL_KEYS);
   fit.row[1] = fit.row[0];
   char *same = table_of(&fit);
