@@ -102,14 +102,16 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
                                  struct arena *arena) {
   struct ring_mean ring;
   struct prediction p;
-  if (ring_mean_find(scene, cell, probe, cell->radius, *arena, &ring)) {
+  if (cell_radius_is_known(cell) &&
+      ring_mean_find(scene, cell, probe, cell->radius, *arena, &ring)) {
     struct profile profile = profile_new(&ring, cell->kernel, cell->radius);
     p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted,
                                 family, arena);
   } else {
     p = prediction_from_reference(probe->reference, probe->reference_se, 2, family, arena);
     p.unbiased = !cell->integrator->photons;
-    if (!p.unbiased) p.first = first_clear(scene, probe, cell->radius, family, *arena);
+    if (!p.unbiased && cell_radius_is_known(cell))
+      p.first = first_clear(scene, probe, cell->radius, family, *arena);
   }
   p.independent = cell->integrator->independent;
   return p;

@@ -25,6 +25,12 @@ static void list_kernels(void) {
   }
 }
 
+static void list_reference_radii(void) {
+  for (int k = 0; k < n_reference_radii; k++)
+    printf("  %-18s %s\n  %18s   %s\n", reference_radii[k].name, reference_radii[k].about, "",
+           reference_radii[k].source);
+}
+
 static void list_integrators(void) {
   for (int k = 0; integrator_types[k]; k++)
     printf("  %-15s %s\n  %15s   %s\n", integrator_types[k]->name, integrator_types[k]->about, "",
@@ -84,7 +90,7 @@ static void list_skips(void) {
 
 static void list_experiment(void) {
   for (int k = 0; k < n_experiment_keys; k++)
-    printf("  %-15s %-24s %s\n", experiment_keys[k].name, experiment_keys[k].fallback,
+    printf("  %-17s %-24s %s\n", experiment_keys[k].name, experiment_keys[k].fallback,
            experiment_keys[k].meaning);
 }
 
@@ -100,6 +106,8 @@ static const struct {
     {"integrators", "what one iteration computes", list_integrators},
     {"laws", "radius sequences, rho_i = r_i^d / r_1^d", list_laws},
     {"kernels", "psi / psi(0) on the unit ball; t = distance / radius", list_kernels},
+    {"reference-radii", "what an experiment's radius counts in, at each point",
+     list_reference_radii},
     {"shapes", "of scene files", list_shapes},
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},

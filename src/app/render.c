@@ -34,7 +34,6 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   say(&said, cli, "law", file->law);
   say(&said, cli, "kernel", or (file->kernel, "box"));
   say(&said, cli, "alpha", or (number(arena, file->alpha), "2/3"));
-  say(&said, cli, "radius", number(arena, file->radius));
   say(&said, cli, "photons", arena_format(arena, "%" PRId64, photons));
   say(&said, cli, "iterations", arena_format(arena, "%" PRId64, iterations));
   say(&said, cli, "seed", arena_format(arena, "%" PRId64, seed));
@@ -43,10 +42,17 @@ static bool cell_read(const struct cli *cli, const struct scene *scene, struct c
   say(&said, cli, "depth", arena_format(arena, "%d", file->max_depth));
   say(&said, cli, "hit-points", "1");
   say(&said, cli, "pixel", file->centre ? "centre" : "footprint");
-  *cell = (struct cell){.radius = NAN, .runs = 1, .scene = file_base_name(scene->path, arena)};
+  *cell = (struct cell){.runs = 1,
+                        .scene = file_base_name(scene->path, arena),
+                        .reference_radius = &reference_radii[0]};
+  // The scene's radius is one of scene units, and stands in the way of k.
+  bool other_radius = cli_setting_of(cli, "reference-radius") || cli_setting_of(cli, "k");
+  if (!other_radius) say(&said, cli, "radius", number(arena, file->radius));
   if (!cli_apply(&said, cell, problem) || !cli_apply(cli, cell, problem)) return false;
   if (!cell->law) cell->law = cell_default_law(cell);
-  return true;
+  const char *wrong = cell_settle(cell);
+  return !wrong ||
+         problem_set(problem, "%s: integrator %s: %s", scene->path, cell->integrator->name, wrong);
 }
 
 static bool measure_film(const struct cell *cell, const struct scene *scene, const struct cli *cli,
@@ -54,9 +60,6 @@ static bool measure_film(const struct cell *cell, const struct scene *scene, con
   if (scene->n_lights == 0)
     return problem_set(problem, "%s: the scene has no light, every pixel would be black",
                        scene->path);
-  if (cell->integrator->photons && isnan(cell->radius))
-    return problem_set(problem, "%s: integrator %s needs a radius, say --radius R (scene units)",
-                       scene->path, cell->integrator->name);
   struct estimator *estimator = arena_new(cli->arena, struct estimator, 1);
   struct bvh *bvh =
       bvh_build(scene, (struct bvh_options){.threads = plan_threads(&cli->options)}, cli->arena);
@@ -101,7 +104,7 @@ static int render(struct cli *cli, struct problem *problem) {
 
 const struct command command_render = {
     "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
-    "output integrator spp iterations photons radius alpha kernel law direct view maxdepth pixel "
-    "hit-points seed "
+    "output integrator spp iterations photons radius reference-radius k alpha kernel law direct view "
+    "maxdepth pixel hit-points seed "
     "threads quiet no-skip lenient",
     render};

@@ -38,6 +38,13 @@ void grid_build(struct grid *, const struct photons *, double r, struct arena *)
 // distances, in the grid's order. At most `count` of the photons there are.
 int grid_find(const struct grid *, struct vec p, double r, uint32_t *photon, double *distance2);
 
+// Of what it holds.
+static inline int64_t grid_bytes(const struct grid *grid) {
+  return grid->count *
+             (int64_t)(sizeof(struct vec) + sizeof(struct grid_cell) + 2 * sizeof(uint32_t)) +
+         ((int64_t)grid->mask + 2) * (int64_t)sizeof(uint32_t);
+}
+
 // The cells that the ball of radius r around any of n points meets, as a filter for photons_trace.
 // Conservative: it may keep more, never less, than what a query around these points can find.
 struct grid_seen {

@@ -208,3 +208,10 @@ void local_pass(struct local *local, uint64_t i, double *frame) {
   }
   photon_map_add_seen(local->map, i, frame);
 }
+
+int64_t local_bytes(const struct local *local) {
+  int64_t bytes = photons_bytes(&local->map->photons);
+  for (int level = 0; level < LOCAL_LEVELS; level++)
+    if (local->used[level]) bytes += grid_bytes(&local->grid[level]);
+  return bytes;
+}

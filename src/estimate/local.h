@@ -36,4 +36,7 @@ void local_see(struct local *, uint64_t i);
 // local statistics follows i alone.
 void local_pass(struct local *, uint64_t i, double *frame);
 
+// Of the photons of the last pass and the grids that find them.
+int64_t local_bytes(const struct local *);
+
 #endif

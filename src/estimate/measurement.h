@@ -17,7 +17,9 @@ struct estimator {
   const struct kernel *kernel;
   const struct law *law;
   double alpha;
-  double r1; // support at i = 1, scene units
+  double r1; // support at i = 1, in units of the reference radius; without one, scene units
+  const struct reference_radius *reference; // NULL: global
+  int k; // nearest photons of the reference radius, or of a photon map's estimate; 0: none
 };
 
 // What determines the paths, and the estimators that share them.
@@ -41,6 +43,12 @@ struct measurement {
   unsigned left_out; // bits of enum light_path: what is not to be seen; 0: all is
   int threads;       // that one iteration may use, where iterations depend on each other; 0: one
 };
+
+// Whether all iterations see the same points.
+static inline bool measurement_is_static(const struct measurement *measure) {
+  return !measure->footprint && !measure->features.random_eye &&
+         !(measure->skip_off & SKIP_STATIC_EYE);
+}
 
 // Kernel, law and radius mean nothing to some integrators: all estimators get the first one's
 // frame.

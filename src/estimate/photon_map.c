@@ -44,11 +44,16 @@ const struct photon_filter *photon_map_filter(struct photon_map *map, double r) 
 void photon_map_emit(struct photon_map *map, uint64_t i, double r) {
   const struct measurement *measure = map->measure;
   struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
-  const struct photon_filter *filter = photon_map_filter(map, r);
+  // A tree depends on all photons, and so would its order on those left out.
+  map->any_radius = r == INFINITY;
+  const struct photon_filter *filter = map->any_radius ? NULL : photon_map_filter(map, r);
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
   walk_begin(map->walk, measure->seed, map->run, i);
   photons_trace(map->walk, &pass, filter, &map->photons, map->arena);
-  grid_build(&map->grid, &map->photons, r, map->arena);
+  if (map->any_radius)
+    knn_build(&map->tree, map->photons.position, map->photons.count, map->arena);
+  else
+    grid_build(&map->grid, &map->photons, r, map->arena);
 }
 
 void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *count,
@@ -60,9 +65,31 @@ void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *
   if (!point->bsdf.type) return;
   for (int e = 0; e < measure->n_estimators; e++)
     map->disc[e] = disc_of(measure->estimator[e].kernel, map->c[e], r[e], measure->n_emitted);
-  gather_point(&map->gather, &map->photons, &map->grid, point, measure->depth, map->disc,
-               measure->n_estimators, count, frame + (long)j * n_channels,
-               (long)measure->n_points * n_channels, map->arena);
+  double *out = frame + (long)j * n_channels;
+  long stride = (long)measure->n_points * n_channels;
+  if (map->any_radius)
+    gather_point_in_tree(&map->gather, &map->photons, &map->tree, point, measure->depth, map->disc,
+                         measure->n_estimators, count, out, stride, map->arena);
+  else
+    gather_point(&map->gather, &map->photons, &map->grid, point, measure->depth, map->disc,
+                 measure->n_estimators, count, out, stride, map->arena);
+}
+
+void photon_map_nearest(struct photon_map *map, int j, const int *k, double *frame) {
+  const struct measurement *measure = map->measure;
+  int n_channels = measure->features.n_channels;
+  if (!map->point[j].bsdf.type) return;
+  for (int e = 0; e < measure->n_estimators; e++)
+    map->disc[e] = disc_of(measure->estimator[e].kernel, map->c[e], 1, measure->n_emitted);
+  gather_nearest(&map->gather, &map->photons, &map->tree, &map->point[j], measure->depth, map->disc,
+                 k, measure->n_estimators, frame + (long)j * n_channels,
+                 (long)measure->n_points * n_channels, map->arena);
+}
+
+int64_t photon_map_bytes(const struct photon_map *map) {
+  return photons_bytes(&map->photons) + (map->any_radius
+                                             ? map->tree.count * (int64_t)sizeof(struct knn_item)
+                                             : grid_bytes(&map->grid));
 }
 
 // Light samples of points first..first + n - 1; the eye pass drew nothing from these pairs.

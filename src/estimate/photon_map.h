@@ -17,8 +17,10 @@ struct photon_map {
   struct eye_point *point; // [measure->n_points]
   int sets;                // ppm: the points are this many sets, each of all pixels; else 1
   struct photons photons;
-  double *c; // [n_estimators] psi(0) of the kernel
+  double *c;       // [n_estimators] psi(0) of the kernel
+  bool any_radius; // the photons are in `tree`, else in `grid`
   struct grid grid;
+  struct knn tree;
   struct gather gather;
   struct disc *disc; // [n_estimators] scratch
   struct grid_seen seen;
@@ -36,7 +38,8 @@ void photon_map_see(struct photon_map *, uint64_t i);
 // next call.
 const struct photon_filter *photon_map_filter(struct photon_map *, double r);
 
-// The photon pass of iteration i, made ready for radii up to r.
+// The photon pass of iteration i, made ready for radii up to r; INFINITY: for any, and for
+// photon_map_nearest.
 void photon_map_emit(struct photon_map *, uint64_t i, double r);
 
 // Adds the estimates at a point with radius r[e] of estimator e to
@@ -44,6 +47,12 @@ void photon_map_emit(struct photon_map *, uint64_t i, double r);
 // or [n_estimators]).
 void photon_map_gather(struct photon_map *, int point, const double *r, int64_t *count,
                        double *frame);
+
+// The same from the k[e] nearest photons, where k[e] > 0.
+void photon_map_nearest(struct photon_map *, int point, const int *k, double *frame);
+
+// Of the stored photons and what finds them.
+int64_t photon_map_bytes(const struct photon_map *);
 
 // Adds what needs no photons: emission seen by the points, and their direct light where it is left
 // to next-event estimation (random in iteration i).

@@ -28,6 +28,8 @@ KEY(integrator, cell->integrator->name)
 KEY(kernel, cell->kernel->name)
 KEY(law, cell->law->name)
 KEY(alpha, real(cell->alpha, digits, buffer))
+KEY(reference_radius, cell->reference_radius->name)
+KEY(k, count((uint64_t)cell->k, buffer))
 KEY(radius, real(cell->radius, digits, buffer))
 KEY(photons, count(cell->photons, buffer))
 KEY(iterations, count(cell->iterations, buffer))
@@ -65,7 +67,9 @@ const struct cell_key cell_keys[CELL_KEYS] = {
     {"kernel", KEY_NAME, false, key_kernel},
     {"law", KEY_NAME, false, key_law},
     {"alpha", KEY_REAL, true, key_alpha},
+    {"reference-radius", KEY_NAME, false, key_reference_radius},
     {"radius", KEY_REAL, false, key_radius},
+    {"k", KEY_COUNT, false, key_k},
     {"photons", KEY_COUNT, false, key_photons},
     {"iterations", KEY_COUNT, false, key_iterations},
     {"runs", KEY_COUNT, false, key_runs},

@@ -13,7 +13,12 @@ const struct experiment_key experiment_keys[] = {
      key_read_law},
     {"kernel", "box", "kernel", true, key_read_kernel},
     {"alpha", "2/3", "parameter of the law, in [0, 1]; a number or a ratio", true, key_read_alpha},
-    {"radius", "(required)", "support at i = 1, scene units", true, key_read_radius},
+    {"reference-radius", "global", "what the radius counts in at each point", true,
+     key_read_reference_radius},
+    {"radius", "(required, or 1)", "support at i = 1, in reference radii (global: scene units)",
+     true, key_read_radius},
+    {"k", "(50 for knn)", "nearest photons: of knn, or photonmap's estimate instead of a radius",
+     true, key_read_k},
     {"photons", "65536", "emitted paths per iteration", true, key_read_photons},
     {"iterations", "1000", "N", true, key_read_iterations},
     {"runs", "32", "K, independent replications", true, key_read_runs},
@@ -139,12 +144,36 @@ static const struct node *pick(const struct level *level, int k, const int *choi
   return fallback;
 }
 
-static bool check_cell(struct reader *reader, const struct level *level, const struct cell *cell) {
+enum { DEFAULT_K = 50 };
+
+// Of an integrator that stores photons.
+static const char *settle_radius(struct cell *cell) {
+  bool nearest = cell->reference_radius->nearest;
+  if (!cell->reference_radius->global && !cell->integrator->takes_reference)
+    return "reference-radius: this integrator knows only global";
+  if (cell->k > 0 && !nearest && !cell->integrator->takes_k)
+    return "k: belongs to reference-radius knn or to integrator photonmap";
+  if (nearest && cell->k == 0) cell->k = DEFAULT_K;
+  if (!nearest && cell->k == 1) return "k: the first of one nearest photon is none, at least 2";
+  if (!nearest && cell->k > 0)
+    return cell->radius > 0 ? "k and radius: an estimate takes one of them" : NULL;
+  if (!cell->reference_radius->global && !(cell->radius > 0)) cell->radius = 1;
+  if (!(cell->radius > 0))
+    return "radius is missing (the kernel's support at i = 1, in scene units)";
+  return NULL;
+}
+
+const char *cell_settle(struct cell *cell) {
+  if (cell->integrator->fixed && strcmp(cell->law->name, "fixed") != 0)
+    return "law: all iterations of this integrator have the same radius, take fixed or none";
+  return cell->integrator->photons ? settle_radius(cell) : NULL;
+}
+
+static bool check_cell(struct reader *reader, const struct level *level, struct cell *cell) {
   struct problem *problem = reader->reading.problem;
   if (!cell->scene_path) return problem_at(problem, level->place, "scene is missing");
-  if (cell->integrator->photons && cell->radius == 0)
-    return problem_at(problem, level->place,
-                      "radius is missing (the kernel's support at i = 1, in scene units)");
+  const char *wrong = cell_settle(cell);
+  if (wrong) return problem_at(problem, level->place, "%s", wrong);
   if (cell->n_images && cell->image[cell->n_images - 1] > cell->iterations)
     return problem_at(problem, level->value[key_number("images")]->place,
                       "images: %llu is beyond the %llu iterations",

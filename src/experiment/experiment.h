@@ -10,6 +10,7 @@
 #include "base/problem.h"
 #include "density/kernel.h"
 #include "density/law.h"
+#include "estimate/reference_radius.h"
 #include "integrator/integrator.h"
 
 #include <stdbool.h>
@@ -27,7 +28,9 @@ struct cell {
   const struct kernel *kernel;
   const struct law *law;   // NULL while being read: the integrator's default
   double alpha;            // in [0, 1]
-  double radius;           // support at i = 1, scene units, > 0
+  double radius;           // support at i = 1, in reference radii, > 0; 0: it has none
+  const struct reference_radius *reference_radius;
+  int k;                   // nearest photons, of knn or of photonmap; 0: none
   uint64_t photons;        // emitted per iteration, >= 1
   uint64_t iterations, runs; // N >= 1, K >= 1
   uint64_t seed;
@@ -47,6 +50,15 @@ struct cell {
 
 // The law where none is said.
 const struct law *cell_default_law(const struct cell *);
+
+// Sets what follows from other keys: a radius of 1 reference radius, k of knn. NULL, or what is wrong
+// with the keys together.
+const char *cell_settle(struct cell *);
+
+// Whether the radius is the same at all points, in scene units.
+static inline bool cell_radius_is_known(const struct cell *cell) {
+  return cell->reference_radius->global && cell->radius > 0;
+}
 
 struct experiment {
   const char *path, *name, *title, *quality; // name: base name without extension

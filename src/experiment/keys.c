@@ -49,6 +49,16 @@ bool key_read_law(struct reading *reading, const struct node *node, struct cell 
   return true;
 }
 
+bool key_read_reference_radius(struct reading *reading, const struct node *node,
+                               struct cell *cell) {
+  int choice;
+  const char **names = arena_new(reading->arena, const char *, n_reference_radii);
+  for (int j = 0; j < n_reference_radii; j++) names[j] = reference_radii[j].name;
+  if (!value_choice(reading, node, names, n_reference_radii, &choice)) return false;
+  cell->reference_radius = &reference_radii[choice];
+  return true;
+}
+
 // ---- numbers ----
 
 bool key_read_alpha(struct reading *reading, const struct node *node, struct cell *cell) {
@@ -60,6 +70,13 @@ bool key_read_alpha(struct reading *reading, const struct node *node, struct cel
 bool key_read_radius(struct reading *reading, const struct node *node, struct cell *cell) {
   if (!value_number(reading, node, &cell->radius)) return false;
   return cell->radius > 0 || value_complain(reading, node, "is not positive");
+}
+
+bool key_read_k(struct reading *reading, const struct node *node, struct cell *cell) {
+  uint64_t k;
+  if (!value_count(reading, node, 1, INT_MAX, &k)) return false;
+  cell->k = (int)k;
+  return true;
 }
 
 bool key_read_photons(struct reading *reading, const struct node *node, struct cell *cell) {

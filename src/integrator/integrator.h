@@ -16,12 +16,17 @@ struct integrator_type {
                     // i = 1, 2, ... after begin
   const char *law; // the default; NULL: knaus-zwicker
   bool one_eye_pass; // eye points are drawn once a run and stay
+  bool takes_reference; // reference radii other than global
+  bool takes_k;         // the k nearest photons instead of a radius
+  bool fixed;           // all iterations have the same radius: no law but fixed
   // State for one thread. The measurement must outlive it.
   void *(*create)(const struct measurement *, struct arena *);
   void (*begin)(void *state, uint64_t run); // k = 1, 2, ...; references take 0
   // frame[(estimator * n_points + point) * n_channels + channel]: radiance (W sr^-1 m^-2) this
   // iteration alone estimates.
   void (*step)(void *state, uint64_t i, double *frame);
+  // Of the photons of the last step and what finds them; NULL: none are stored.
+  int64_t (*bytes)(const void *state);
 };
 
 extern const struct integrator_type *const integrator_types[]; // NULL-terminated

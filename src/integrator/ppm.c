@@ -61,6 +61,10 @@ static void ppm_step(void *data, uint64_t i, double *frame) {
   average(state, frame);
 }
 
+static int64_t ppm_bytes(const void *data) {
+  return local_bytes(((const struct ppm *)data)->local);
+}
+
 const struct integrator_type integrator_ppm = {
     .name = "ppm",
     .about = "hit points of one eye pass, then photon passes that shrink each point's own radius",
@@ -72,4 +76,5 @@ const struct integrator_type integrator_ppm = {
     .create = ppm_new,
     .begin = ppm_begin,
     .step = ppm_step,
+    .bytes = ppm_bytes,
 };

@@ -1,7 +1,7 @@
 // Probabilistic progressive photon mapping (Knaus, Zwicker 2011): iterations are independent photon
-// maps, each with its own radius r_i from a law that knows only i; the image is their average.
-// No local statistics, any kernel.
-#include "estimate/photon_map.h"
+// maps, each with its own radius r_i from a law that knows only i, times a reference radius of the
+// point; the image is their average. No local statistics, any kernel.
+#include "estimate/reference_radius.h"
 #include "integrator/integrator.h"
 
 #include <string.h>
@@ -10,7 +10,8 @@ struct probabilistic {
   const struct measurement *measure;
   struct photon_map *map;
   bool points_are_fixed, points_are_traced;
-  double *r; // [n_estimators] of this iteration
+  struct radii radii;
+  double *r; // [n_estimators] of this iteration, in reference radii
 };
 
 static void *probabilistic_new(const struct measurement *measure, struct arena *arena) {
@@ -18,8 +19,8 @@ static void *probabilistic_new(const struct measurement *measure, struct arena *
   state->measure = measure;
   state->map = photon_map_new(measure, arena);
   state->r = arena_new(arena, double, measure->n_estimators);
-  state->points_are_fixed = !measure->footprint && !measure->features.random_eye &&
-                            !(measure->skip_off & SKIP_STATIC_EYE);
+  state->radii = radii_new(state->map, arena);
+  state->points_are_fixed = measurement_is_static(measure);
   return state;
 }
 
@@ -28,7 +29,7 @@ static void probabilistic_begin(void *data, uint64_t run) {
   state->map->run = run;
 }
 
-// Radii of this iteration; returns the largest.
+// Radii of this iteration, in reference radii; returns the largest.
 static double set_radii(struct probabilistic *state, uint64_t i) {
   const struct measurement *measure = state->measure;
   double largest = 0;
@@ -44,12 +45,21 @@ static void probabilistic_step(void *data, uint64_t i, double *frame) {
   struct probabilistic *state = data;
   const struct measurement *measure = state->measure;
   memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
-  if (!state->points_are_fixed || !state->points_are_traced) photon_map_see(state->map, i);
+  if (!state->points_are_fixed || !state->points_are_traced) {
+    photon_map_see(state->map, i);
+    radii_set(&state->radii);
+  }
   state->points_are_traced = true;
-  photon_map_emit(state->map, i, set_radii(state, i));
+  double largest = set_radii(state, i);
+  photon_map_emit(state->map, i, state->radii.global ? largest : INFINITY);
   for (int j = 0; j < measure->n_points; j++)
-    photon_map_gather(state->map, j, state->r, NULL, frame);
+    photon_map_gather(state->map, j, radii_scale(&state->radii, j, state->r), NULL, frame);
   photon_map_add_seen(state->map, i, frame);
+}
+
+static int64_t probabilistic_bytes(const void *data) {
+  const struct probabilistic *state = data;
+  return photon_map_bytes(state->map) + radii_bytes(&state->radii);
 }
 
 const struct integrator_type integrator_probabilistic = {
@@ -58,7 +68,9 @@ const struct integrator_type integrator_probabilistic = {
     .source = "Knaus and Zwicker 2011",
     .photons = true,
     .independent = true,
+    .takes_reference = true,
     .create = probabilistic_new,
     .begin = probabilistic_begin,
     .step = probabilistic_step,
+    .bytes = probabilistic_bytes,
 };

@@ -14,6 +14,8 @@ static void sppm_step(void *state, uint64_t i, double *frame) {
   local_pass(state, i, frame);
 }
 
+static int64_t sppm_bytes(const void *state) { return local_bytes(state); }
+
 const struct integrator_type integrator_sppm = {
     .name = "sppm",
     .about = "a new eye pass each iteration, radius and count shared by the pixel",
@@ -24,4 +26,5 @@ const struct integrator_type integrator_sppm = {
     .create = sppm_new,
     .begin = sppm_begin,
     .step = sppm_step,
+    .bytes = sppm_bytes,
 };

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-enum rng_purpose { RNG_PHOTONS = 1, RNG_EYE, RNG_REFERENCE, RNG_TEST, RNG_TIME };
+enum rng_purpose { RNG_PHOTONS = 1, RNG_EYE, RNG_REFERENCE, RNG_TEST, RNG_TIME, RNG_RADII };
 
 struct rng_key {
   uint32_t word[2];

@@ -47,19 +47,24 @@ static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, cons
   keep_images(plan, i, sum->film, sum->film_size, value);
 }
 
-static void run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
-                     struct averages *sum, double *value) {
+// Returns the most bytes of photons that an iteration held.
+static int64_t run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
+                        struct averages *sum, double *value) {
   const struct integrator_type *integrator = plan->cell->integrator;
   memset(sum->probe, 0, (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
   memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
   integrator->begin(state, run);
   int next = 0;
+  int64_t most = 0;
   for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
     integrator->step(state, i, frame);
+    int64_t bytes = integrator->bytes ? integrator->bytes(state) : 0;
+    most = most < bytes ? bytes : most;
     bool due = plan->checkpoint[next] == i;
     keep(plan, i, due ? next : -1, frame, sum, value);
     next += due;
   }
+  return most;
 }
 
 int block_runs(const struct group_plan *plan, uint64_t block) {
@@ -67,8 +72,8 @@ int block_runs(const struct group_plan *plan, uint64_t block) {
   return left < RUNS_PER_BLOCK ? (int)left : RUNS_PER_BLOCK;
 }
 
-void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
-                   struct progress *progress, double run_work, struct arena scratch) {
+int64_t block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
+                      struct progress *progress, double run_work, struct arena scratch) {
   const struct measurement *measure = &plan->measure;
   long frame_size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
   double *frame = arena_new(&scratch, double, frame_size);
@@ -79,13 +84,17 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                          plan->images ? frame_size : 0};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   void *state = plan->cell->integrator->create(measure, &scratch);
+  int64_t most = 0;
   for (int run = 1; run <= block_runs(plan, block); run++) {
-    run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value);
+    int64_t bytes =
+        run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value);
+    most = most < bytes ? bytes : most;
     for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(value[k]);
     moments_tree_push(&tree, leaf, &scratch);
     progress_advance(progress, run_work);
   }
   moments_tree_root(&tree, out);
+  return most;
 }
 
 // ---- files ----

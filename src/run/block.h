@@ -7,9 +7,9 @@
 #include "run/progress.h"
 
 // Moments over runs 16 block + 1 ... of each of the plan's `width` numbers. After each run the
-// progress advances by `run_work`.
-void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
-                   struct progress *, double run_work, struct arena scratch);
+// progress advances by `run_work`. Returns the most bytes of photons that an iteration held.
+int64_t block_compute(const struct group_plan *, uint64_t block, struct moments *out,
+                      struct progress *, double run_work, struct arena scratch);
 
 // How many runs the block has: RUNS_PER_BLOCK, or less at the end.
 int block_runs(const struct group_plan *, uint64_t block);
@@ -17,6 +17,7 @@ int block_runs(const struct group_plan *, uint64_t block);
 // What a block took; not part of any result.
 struct block_time {
   double wall_s, cpu_s;
+  int64_t photon_bytes; // the most an iteration held, of photons and what finds them
 };
 
 // Blocks of a plan are files in DIRECTORY/blocks/FINGERPRINT, so that the unfinished work of

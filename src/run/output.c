@@ -150,7 +150,7 @@ static bool write_timing(const struct outputs *outputs, struct arena scratch,
                          struct problem *problem) {
   struct file_out out;
   if (!file_begin(&out, path_of(outputs->directory, "timing.csv", &scratch), problem)) return false;
-  fputs("group,block,scene,photons,iterations,wall_s,cpu_s\n", out.stream);
+  fputs("group,block,scene,photons,iterations,photon_bytes,wall_s,cpu_s\n", out.stream);
   const char *folder = block_folder(outputs->plan, outputs->directory, &scratch);
   for (int g = 0; g < outputs->plan->n_groups; g++) {
     const struct group_plan *group = &outputs->plan->group[g];
@@ -158,8 +158,9 @@ static bool write_timing(const struct outputs *outputs, struct arena scratch,
     for (uint64_t b = 0; b < group->n_blocks; b++) {
       struct block_time time = {0};
       block_exists(group, b, folder, &time, scratch);
-      fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%.6f,%.6f\n", g, b,
-              cell->scene, cell->photons, cell->iterations, time.wall_s, time.cpu_s);
+      fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%" PRId64 ",%.6f,%.6f\n", g, b,
+              cell->scene, cell->photons, cell->iterations, time.photon_bytes, time.wall_s,
+              time.cpu_s);
     }
   }
   return file_commit(&out, problem);

@@ -112,7 +112,12 @@ static bool check_points(const struct cell *cell, const struct scene *scene,
 
 bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
                     struct problem *problem) {
-  *estimator = (struct estimator){cell->kernel, cell->law, cell->alpha, cell->radius};
+  *estimator = (struct estimator){.kernel = cell->kernel,
+                                  .law = cell->law,
+                                  .alpha = cell->alpha,
+                                  .r1 = cell->radius,
+                                  .reference = cell->reference_radius,
+                                  .k = cell->k};
   if (!cell->integrator->photons) return true;
   if (!check_law(cell, problem) || !check_points(cell, scene, problem)) return false;
   if (cell->photons > MOST_PHOTONS)
@@ -120,6 +125,7 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
                        "photons: %" PRIu64 " at once do not fit into memory; more iterations of "
                        "fewer photons say the same",
                        cell->photons);
+  if (!cell_radius_is_known(cell)) return true; // it is found when the points are
   double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
   return grid_radius_is_resolved(scene->bounds, last, problem);
 }

@@ -92,8 +92,8 @@ static void compute(const struct group_plan *plan, const struct unit *unit, cons
   double wall = progress_clock_s(), cpu = thread_cpu_s();
   struct moments *moments = arena_new(&scratch, struct moments, plan->width);
   double run_work = unit->work / block_runs(plan, unit->block);
-  block_compute(plan, unit->block, moments, progress, run_work, scratch);
-  struct block_time time = {progress_clock_s() - wall, thread_cpu_s() - cpu};
+  int64_t bytes = block_compute(plan, unit->block, moments, progress, run_work, scratch);
+  struct block_time time = {progress_clock_s() - wall, thread_cpu_s() - cpu, bytes};
   block_write(plan, unit->block, folder, moments, time, scratch);
 }
 

@@ -26,6 +26,8 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
     if (lens) u[0] = walk->u[1][0][j], u[1] = walk->u[1][1][j];
     double x = pixel[j].x + 0.5 + offset[0], y = pixel[j].y + 0.5 + offset[1];
     walk_start(walk, j, camera_ray(camera, x, y, lens ? u : NULL));
+    if (walk->differential)
+      walk->differential[j] = differential_of_camera(camera, x, y, lens ? u : NULL);
     walk->owner[j] = j;
     walk->pdf[j] = 0;
     walk->kind[j] = LIGHT_PATH_EMITTED;
@@ -57,12 +59,17 @@ static void stop(const struct walk *walk, int j, const struct surface *surface,
   point->bsdf = *bsdf;
   point->wo = vec_scale(walk->ray[j].d, -1);
   for (int c = 0; c < walk->n_channels; c++) point->weight[c] = walk->throughput[c][j] / share;
+  if (!walk->differential) return;
+  point->across = differential_across(&walk->differential[j]);
+  point->footprint = differential_footprint(&walk->differential[j]);
 }
 
 // At a hit: add what it emits, then stop here or follow a delta lobe. True: the path goes on.
 static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
   struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
   struct vec wo = vec_scale(walk->ray[j].d, -1);
+  if (walk->differential)
+    differential_transfer(&walk->differential[j], walk->from[j], walk->ray[j].d, &surface);
   double emitted[3];
   eye_emitted(walk->scene, &surface, wo, emitted);
   for (int c = 0; c < walk->n_channels; c++)

@@ -8,14 +8,16 @@
 // What one pixel sees. Where a surface has delta lobes beside others, which of the two is seen is
 // random, so that a path has one point.
 struct eye_point {
-  bool hit;           // the path ended on a surface; false: it left the scene or was absorbed
-  int vertex;         // scatterings between the camera and here
+  bool hit;   // the path ended on a surface; false: it left the scene or was absorbed
+  int vertex; // scatterings between the camera and here
   struct vec p;
-  uint32_t primitive; // p is on it
-  struct bsdf bsdf;   // type NULL: scatters nothing
-  struct vec wo;      // towards the eye, unit length
-  double weight[3];   // of radiance leaving towards wo, in the pixel
-  double emitted[3];  // radiance met on the way, weights included: L S* E, and the background
+  uint32_t primitive;       // p is on it
+  struct bsdf bsdf;         // type NULL: scatters nothing
+  struct vec wo;            // towards the eye, unit length
+  double weight[3];         // of radiance leaving towards wo, in the pixel
+  double emitted[3];        // radiance met on the way, weights included: L S* E, and the background
+  double across, footprint; // the pixel's width here, straight and on the surface, scene units
+                            // (walk/differential.h); 0 if nobody asked
 };
 
 // The rays of n <= WALK_BATCH pixels; pixel centres, or with `footprint` positions distributed as

@@ -15,6 +15,13 @@ struct photons {
   uint8_t *kind;    // enum light_path: what an eye that looks here completes
 };
 
+// Of what it holds.
+static inline int64_t photons_bytes(const struct photons *photons) {
+  return photons->count *
+         (2 * (int64_t)sizeof(struct vec) + (int64_t)(sizeof(uint16_t) + sizeof(uint8_t)) +
+          photons->n_channels * (int64_t)sizeof(double));
+}
+
 struct photon_pass {
   uint64_t n_emitted;
   int depth;        // pbrt's maxdepth: the most scatterings, the one towards the eye included

@@ -50,6 +50,10 @@ struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct f
   return walk;
 }
 
+void walk_follow_differentials(struct walk *walk, struct arena *arena) {
+  walk->differential = arena_new(arena, struct differential, WALK_BATCH);
+}
+
 void walk_begin(struct walk *walk, uint64_t seed, uint64_t run, uint64_t i) {
   walk->iteration = i;
   if (!walk->features.motion) return;
@@ -77,6 +81,7 @@ void walk_move(struct walk *walk, int to, int from) {
   walk->from[to] = walk->from[from];
   walk->pdf[to] = walk->pdf[from];
   walk->owner[to] = walk->owner[from];
+  if (walk->differential) walk->differential[to] = walk->differential[from];
   walk->kind[to] = walk->kind[from];
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
@@ -86,7 +91,8 @@ void walk_move(struct walk *walk, int to, int from) {
 // is what alpha says. The ray goes on from the surface; nothing else of the path changes.
 
 bool walk_meets_see_through(const struct scene *scene, struct hit hit) {
-  return hit.primitive != PRIMITIVE_NONE && scene->shape[scene->shape_of[hit.primitive]].see_through;
+  return hit.primitive != PRIMITIVE_NONE &&
+         scene->shape[scene->shape_of[hit.primitive]].see_through;
 }
 
 struct ray walk_ray_beyond(const struct surface *surface, const struct ray *ray) {
@@ -177,6 +183,9 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
   // A weight above 1 always survives and keeps its weight.
   double divisor = survive < 1 ? survive : 1;
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= sample.weight[c] / divisor;
+  if (walk->differential && walk->transport == TRANSPORT_RADIANCE)
+    differential_scatter(&walk->differential[j], walk->scene, surface, bsdf->n, walk->ray[j].d,
+                         sample.wi, sample.eta2);
   walk_start(walk, j, (struct ray){surface->p, sample.wi, INFINITY, surface->primitive});
   walk->pdf[j] = sample.pdf;
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], sample.pdf == 0);

@@ -7,6 +7,7 @@
 #include "bvh/view.h"
 #include "numeric/rng.h"
 #include "scene/scene.h"
+#include "walk/differential.h"
 #include "walk/light_path.h"
 
 enum { WALK_BATCH = 4096 };
@@ -26,11 +27,12 @@ struct walk {
   uint64_t *path;  // [n] number of the path, its identity for random numbers
   struct ray *ray; // d of unit length
   struct hit *hit;
-  struct vec *from; // where the segment began; ray.o is where it last passed a surface
+  struct vec *from;      // where the segment began; ray.o is where it last passed a surface
   double *throughput[3]; // photons: flux [W]; eye paths: weight of what is met next
   double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: next-event
                          // estimation cannot find what it meets (delta lobe, camera)
   int *owner;            // eye paths: the point this path belongs to
+  struct differential *differential; // [n] of eye paths; NULL: nobody asks
   uint8_t *kind;         // enum light_path: what an emitter (photons: an eye) here completes
 
   double *u[4][2]; // scratch: pairs of random numbers
@@ -42,13 +44,13 @@ struct walk {
     int *owner;
     int n;
   } shadow;
-  struct crossing { // paths before a see-through surface; only where the scene has any
-    int n, number;   // of paths that stand before one; of the next crossing since `vertex`
-    int *slot;       // [n] which
-    int n_passed;    // of those the last walk_cross let pass
-    int *passed;     // [n_passed] which
+  struct crossing {          // paths before a see-through surface; only where the scene has any
+    int n, number;           // of paths that stand before one; of the next crossing since `vertex`
+    int *slot;               // [n] which
+    int n_passed;            // of those the last walk_cross let pass
+    int *passed;             // [n_passed] which
     struct surface *surface; // [n_passed] what they passed; the path's ray begins there now
-    struct ray *ray; // scratch
+    struct ray *ray;         // scratch
     struct hit *hit;
     uint64_t *path;
     double *u[2];
@@ -56,6 +58,9 @@ struct walk {
 };
 
 struct walk *walk_new(const struct scene *, const struct bvh *, struct features, struct arena *);
+
+// From now on eye paths carry their differentials.
+void walk_follow_differentials(struct walk *, struct arena *);
 
 // Begins iteration i of a run: where things move, at its time, which eye and photon paths share.
 void walk_begin(struct walk *, uint64_t seed, uint64_t run, uint64_t i);

@@ -45,7 +45,8 @@ static void stop_if_interrupted(void) {
 static struct image render_one(const struct subject *subject, uint64_t seed, uint64_t samples,
                                struct arena *arena, struct arena scratch) {
   static const char *const names[] = {"R", "G", "B"};
-  struct estimator unused = {kernel_find("box"), law_find("knaus-zwicker"), 1, 1};
+  struct estimator unused = {
+      .kernel = kernel_find("box"), .law = law_find("knaus-zwicker"), .alpha = 1, .r1 = 1};
   struct measurement measure = subject->measure;
   struct image image, kept;
   measure.seed = seed;
@@ -138,8 +139,10 @@ void photons_extrapolate(const struct subject *subject, struct photon_plan plan,
   const struct integrator_type *probabilistic = integrator_find("probabilistic");
   struct estimator estimator[3];
   for (int e = 0; e < 3; e++) // alpha 1: the radius stays
-    estimator[e] = (struct estimator){kernel_find("epanechnikov"), law_find("knaus-zwicker"), 1,
-                                      ldexp(plan.radius, -e)};
+    estimator[e] = (struct estimator){.kernel = kernel_find("epanechnikov"),
+                                      .law = law_find("knaus-zwicker"),
+                                      .alpha = 1,
+                                      .r1 = ldexp(plan.radius, -e)};
   struct measurement measure = subject->measure;
   measure.n_emitted = plan.n_emitted;
   measure.seed = seed_of(subject, plan.purpose, 0, scratch);

@@ -130,6 +130,7 @@ static inline struct fit synthetic_fit_with(const struct synthetic *s,
   struct results *results = arena_new(arena, struct results, 1);
   struct cell *cell = arena_new(arena, struct cell, 1);
   *cell = (struct cell){.scene = "synthetic",
+                        .reference_radius = &reference_radii[0],
                         .integrator = &synthetic_integrator,
                         .kernel = kernel_find("box"),
                         .law = law_find("knaus-zwicker"),

@@ -25,7 +25,8 @@ static const struct scene *scene_load(const char *path) {
 }
 
 static struct estimator estimator_of(const char *kernel, double alpha, double r1) {
-  return (struct estimator){kernel_find(kernel), law_find("knaus-zwicker"), alpha, r1};
+  return (struct estimator){
+      .kernel = kernel_find(kernel), .law = law_find("knaus-zwicker"), .alpha = alpha, .r1 = r1};
 }
 
 static struct measurement measure(const struct scene *scene, const struct pixel *pixel, int n,

@@ -23,7 +23,8 @@ static struct scene scene_with_sheet(const char *sheet) {
 static struct moments measured(const struct scene *scene, const char *name, int depth,
                                uint64_t iterations) {
   static const struct pixel centre = {1, 1};
-  struct estimator estimator = {kernel_find("box"), law_find("fixed"), 1, 0.25};
+  struct estimator estimator = {
+      .kernel = kernel_find("box"), .law = law_find("fixed"), .alpha = 1, .r1 = 0.25};
   struct measurement measure = {.scene = scene,
                                 .bvh = bvh_build(scene, (struct bvh_options){0}, &arena),
                                 .features = scene_features(scene),

@@ -250,6 +250,8 @@ static void every_key_that_crosses_takes_a_list(void **state) {
                                        {"law", "[knaus-zwicker, knaus-zwicker]"},
                                        {"kernel", "[box, box]"},
                                        {"alpha", "[0.5, 0.6]"},
+                                       {"reference-radius", "[global, ray-differentials]"},
+                                       {"k", "[2, 3]\nreference-radius: knn"},
                                        {"photons", "[1, 2]"},
                                        {"iterations", "[1, 2]"},
                                        {"runs", "[1, 2]"},
@@ -265,6 +267,35 @@ static void every_key_that_crosses_takes_a_list(void **state) {
   assert_int_equal(n_crossing, n_rows + 2); // scene and radius stand in the base
   for (int j = 0; j < n_rows; j++)
     assert_int_equal(read_text(arena_format(&arena, "%s: %s\n", row[j][0], row[j][1])).n_cells, 2);
+}
+
+// What a key says may follow from another.
+static void radius_k_and_law_follow_from_each_other(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *reference, *law;
+    double radius;
+    int k;
+  } row[] = {
+      {"radius: 0.25", "global", "knaus-zwicker", 0.25, 0},
+      {"reference-radius: pixel", "pixel", "knaus-zwicker", 1, 0},
+      {"reference-radius: ray-differentials\nradius: 3", "ray-differentials", "knaus-zwicker", 3,
+       0},
+      {"reference-radius: knn", "knn", "knaus-zwicker", 1, 50},
+      {"reference-radius: knn\nk: 1\nradius: 0.5", "knn", "knaus-zwicker", 0.5, 1},
+      {"integrator: photonmap\nradius: 0.5", "global", "fixed", 0.5, 0},
+      {"integrator: photonmap\nk: 20\nlaw: fixed", "global", "fixed", 0, 20},
+      {"integrator: path", "global", "knaus-zwicker", 0, 0},
+  };
+  for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
+    struct experiment experiment = read_file(
+        write_text(arena_format(&arena, "scene: " SCENE "\n%s\n", row[j].text)), "default");
+    const struct cell *cell = &experiment.cell[0];
+    assert_string_equal(cell->reference_radius->name, row[j].reference);
+    assert_string_equal(cell->law->name, row[j].law);
+    assert_true(cell->radius == row[j].radius);
+    assert_int_equal(cell->k, row[j].k);
+  }
 }
 
 static void a_view_is_all_or_a_sum(void **state) {
@@ -410,7 +441,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 22);
+  assert_int_equal(n_experiment_keys, 24);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);
@@ -434,6 +465,7 @@ int main(void) {
       cmocka_unit_test(a_radius_is_needed_only_where_photons_are_gathered),
       cmocka_unit_test(lists_cross_in_the_order_of_the_table),
       cmocka_unit_test(every_key_that_crosses_takes_a_list),
+      cmocka_unit_test(radius_k_and_law_follow_from_each_other),
       cmocka_unit_test(a_view_is_all_or_a_sum),
       cmocka_unit_test(parts_inherit_and_their_own_values_win),
       cmocka_unit_test(quality_paper_replaces_at_the_top_and_in_a_part),

@@ -92,7 +92,9 @@ static const struct key row_keys[] = {{"cell", COUNT},
                                       {"kernel", STRING},
                                       {"law", STRING},
                                       {"alpha", NUMBER},
+                                      {"reference-radius", STRING},
                                       {"radius", NUMBER},
+                                      {"k", COUNT},
                                       {"photons", COUNT},
                                       {"iterations", COUNT},
                                       {"runs", COUNT},
@@ -377,7 +379,8 @@ static void test_table_tells_cells_apart(void **state) {
   int k = 0;
   other[k++].number++, other[k++].scene = "another", other[k++].integrator = &integrator;
   other[k++].kernel = kernel_find("cone"), other[k++].law = law_find("power");
-  other[k++].alpha = 0.66667, other[k++].radius = 1.0000005, other[k++].photons++;
+  other[k++].alpha = 0.66667, other[k++].reference_radius = &reference_radii[1];
+  other[k++].radius = 1.0000005, other[k++].k++, other[k++].photons++;
   other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
   other[k++].left_out = 1;
   other[k++].depth++, other[k++].footprint = true, other[k++].hit_points = 4;

@@ -236,7 +236,8 @@ static struct measurement measure_pixel(const struct scene *scene, const char *n
                                         struct arena *arena) {
   static const struct pixel pixel = {0, 0};
   static struct estimator estimator;
-  estimator = (struct estimator){kernel_find("box"), law_find("fixed"), 1, 0.2};
+  estimator = (struct estimator){
+      .kernel = kernel_find("box"), .law = law_find("fixed"), .alpha = 1, .r1 = 0.2};
   return (struct measurement){.scene = scene,
                               .bvh = bvh_build(scene, (struct bvh_options){0}, arena),
                               .features = scene_features(scene),

@@ -19,6 +19,7 @@ static void assert_relative(double measured, double expected, double tolerance) 
 
 static struct cell cell_of(const char *kernel, double radius) {
   return (struct cell){.integrator = &photons,
+                       .reference_radius = &reference_radii[0],
                        .kernel = kernel_find(kernel),
                        .law = law_find("knaus-zwicker"),
                        .alpha = 2.0 / 3,

@@ -12,7 +12,7 @@ static const char *begin_blocks(const struct plan *plan, const char *directory) 
   struct moments *moments = arena_new(&arena, struct moments, plan->group[0].width);
   struct progress silent = {.quiet = true};
   block_compute(&plan->group[0], 1, moments, &silent, 0, arena);
-  block_write(&plan->group[0], 1, blocks, moments, (struct block_time){1234.5, 0.5}, arena);
+  block_write(&plan->group[0], 1, blocks, moments, (struct block_time){1234.5, 0.5, 2385}, arena);
   return blocks;
 }
 
@@ -51,7 +51,7 @@ static void a_run_goes_on_where_it_stopped_and_keeps_the_times(void **state) {
   run_into(&experiment, path_in("resumed"));
   assert_string_equal(read_text(path_in("resumed/log.csv")), read_text(path_in("at-once/log.csv")));
   assert_non_null(strstr(read_text(path_in("resumed/timing.csv")), "0,0,"));
-  assert_non_null(strstr(read_text(path_in("resumed/timing.csv")), ",1234.500000,0.500000\n"));
+  assert_non_null(strstr(read_text(path_in("resumed/timing.csv")), ",2385,1234.500000,0.500000\n"));
   assert_false(file_exists(path_in("resumed/blocks")));
 }
 

@@ -1,0 +1,75 @@
+// Photon mapping (Jensen 1996): every iteration is one photon map, and its estimates are over a
+// fixed radius or over the k nearest photons, whose farthest sets the radius and is not counted
+// (density/gather.h). The average over iterations is what more maps give: the variance falls as 1 /
+// N, the bias stays. Less of it needs a smaller radius and so more photons in one map, more memory.
+#include "estimate/photon_map.h"
+#include "integrator/integrator.h"
+
+#include <string.h>
+
+struct photonmap {
+  struct photon_map *map;
+  bool points_are_traced;
+  double *r; // [n_estimators], 0 of those that take the nearest: no disc
+  int *k;    // [n_estimators], 0 of those that have a radius
+  bool any_k;
+};
+
+static void *photonmap_new(const struct measurement *measure, struct arena *arena) {
+  struct photonmap *state = arena_new(arena, struct photonmap, 1);
+  state->map = photon_map_new(measure, arena);
+  state->r = arena_new(arena, double, measure->n_estimators);
+  state->k = arena_new(arena, int, measure->n_estimators);
+  for (int e = 0; e < measure->n_estimators; e++) {
+    const struct estimator *estimator = &measure->estimator[e];
+    state->k[e] = estimator->k;
+    state->r[e] = estimator->k ? 0 : estimator->r1;
+    state->any_k |= estimator->k > 0;
+  }
+  return state;
+}
+
+static void photonmap_begin(void *data, uint64_t run) {
+  struct photonmap *state = data;
+  state->map->run = run;
+}
+
+static double largest_radius(const struct photonmap *state) {
+  double largest = 0;
+  for (int e = 0; e < state->map->measure->n_estimators; e++)
+    largest = largest < state->r[e] ? state->r[e] : largest;
+  return largest;
+}
+
+static void photonmap_step(void *data, uint64_t i, double *frame) {
+  struct photonmap *state = data;
+  const struct measurement *measure = state->map->measure;
+  memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
+  if (!measurement_is_static(measure) || !state->points_are_traced) photon_map_see(state->map, i);
+  state->points_are_traced = true;
+  photon_map_emit(state->map, i, state->any_k ? INFINITY : largest_radius(state));
+  for (int j = 0; j < measure->n_points; j++) {
+    photon_map_gather(state->map, j, state->r, NULL, frame);
+    if (state->any_k) photon_map_nearest(state->map, j, state->k, frame);
+  }
+  photon_map_add_seen(state->map, i, frame);
+}
+
+static int64_t photonmap_bytes(const void *data) {
+  return photon_map_bytes(((const struct photonmap *)data)->map);
+}
+
+const struct integrator_type integrator_photonmap = {
+    .name = "photonmap",
+    .about = "one photon map an iteration, over a fixed radius or the k nearest photons",
+    .source = "Jensen 1996",
+    .law = "fixed",
+    .photons = true,
+    .independent = true,
+    .takes_k = true,
+    .fixed = true,
+    .create = photonmap_new,
+    .begin = photonmap_begin,
+    .step = photonmap_step,
+    .bytes = photonmap_bytes,
+};
