@@ -19,6 +19,8 @@ struct integrator_type {
   bool takes_reference; // reference radii other than global
   bool takes_k;         // the k nearest photons instead of a radius
   bool fixed;           // all iterations have the same radius: no law but fixed
+  // Whether it can measure the scene, at pixel footprints or centres; else a problem. NULL: any.
+  bool (*accepts)(const struct scene *, bool footprint, struct problem *);
   // State for one thread. The measurement must outlive it.
   void *(*create)(const struct measurement *, struct arena *);
   void (*begin)(void *state, uint64_t run); // k = 1, 2, ...; references take 0

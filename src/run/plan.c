@@ -118,6 +118,8 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
                                   .r1 = cell->radius,
                                   .reference = cell->reference_radius,
                                   .k = cell->k};
+  if (cell->integrator->accepts && !cell->integrator->accepts(scene, cell->footprint, problem))
+    return false;
   if (!cell->integrator->photons) return true;
   if (!check_law(cell, problem) || !check_points(cell, scene, problem)) return false;
   if (cell->photons > MOST_PHOTONS)

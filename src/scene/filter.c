@@ -25,6 +25,11 @@ static void box_sample(const struct filter *filter, const double u[2], double of
   for (int k = 0; k < 2; k++) offset[k] = filter->radius[k] * (2 * u[k] - 1);
 }
 
+static double box_density(const struct filter *filter, int axis, double offset) {
+  double r = filter->radius[axis];
+  return offset >= -r && offset < r ? 0.5 / r : 0;
+}
+
 // ---- triangle ----
 static bool triangle_read(struct filter *filter, struct params *params) {
   read_radius(filter, params, 2);
@@ -36,6 +41,11 @@ static void triangle_sample(const struct filter *filter, const double u[2], doub
     double x = u[k] < 0.5 ? sqrt(2 * u[k]) - 1 : 1 - sqrt(2 * (1 - u[k]));
     offset[k] = filter->radius[k] * x;
   }
+}
+
+static double triangle_density(const struct filter *filter, int axis, double offset) {
+  double r = filter->radius[axis], left = r - fabs(offset);
+  return left > 0 ? left / (r * r) : 0;
 }
 
 // ---- gaussian ----
@@ -100,11 +110,19 @@ static void gaussian_sample(const struct filter *filter, const double u[2], doub
   }
 }
 
+static double gaussian_density(const struct filter *filter, int axis, double offset) {
+  struct gauss g = gauss_of(filter, axis);
+  double t = offset / filter->radius[axis] * g.end, above = num_exp(-t * t) - g.floor;
+  if (!(fabs(t) < g.end && above > 0)) return 0;
+  return above / (2 * gauss_integral(g, g.end)) * (g.end / filter->radius[axis]);
+}
+
 static const struct filter_type
-    box = {"box", "the same everywhere; radius 0.5", box_read, box_sample},
+    box = {"box", "the same everywhere; radius 0.5", box_read, box_sample, box_density},
     gaussian = {"gaussian", "a Gaussian minus its value at the radius; radius 1.5, sigma 0.5",
-                gaussian_read, gaussian_sample},
-    triangle = {"triangle", "falls linearly to the radius, 2", triangle_read, triangle_sample};
+                gaussian_read, gaussian_sample, gaussian_density},
+    triangle = {"triangle", "falls linearly to the radius, 2", triangle_read, triangle_sample,
+                triangle_density};
 
 const struct filter_type *const filter_types[] = {&box, &gaussian, &triangle, NULL};
 

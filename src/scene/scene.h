@@ -209,6 +209,9 @@ struct camera_type {
   // The ray in camera space through (x, y) of the window, before the lens; d need not be of unit
   // length.
   struct ray (*ray)(const struct camera *, double x, double y);
+  // Its inverse: the (x, y) whose ray meets p, false if none does. An element of surface at p, as a
+  // vector along its normal, covers the area |flow . element| of the window. NULL: there is none.
+  bool (*find)(const struct camera *, struct vec p, double xy[2], struct vec *flow);
 };
 
 // The ray through continuous pixel coordinates of the image (0.5, 0.5 is the centre of the top left
@@ -225,6 +228,7 @@ struct filter_type {
   const char *name, *about;
   bool (*read)(struct filter *, struct params *);
   void (*sample)(const struct filter *, const double u[2], double offset[2]); // from the centre
+  double (*density)(const struct filter *, int axis, double offset); // of `sample` in x or y
 };
 const struct filter_type *filter_find(const char *name); // scene/filter.c
 extern const struct filter_type *const filter_types[];   // NULL-terminated

@@ -98,14 +98,16 @@ static double *seeing(const struct integrator_type *type, struct measurement mea
 // Rounding: sums of up to some ten thousand terms, each class in an order of its own.
 static void classes_add_up_to_all_for_every_integrator(void **state) {
   (void)state;
-  struct estimator estimator[2] = {{kernel_find("box"), law_find("knaus-zwicker"), 2.0 / 3, 0.3},
-                                   {kernel_find("gaussian"), law_find("hachisuka"), 2.0 / 3, 0.2}};
+  struct estimator estimator[2] = {
+      {.kernel = kernel_find("box"), .law = law_find("knaus-zwicker"), .alpha = 0.6, .r1 = 0.3},
+      {.kernel = kernel_find("gaussian"), .alpha = 0.6, .r1 = 0.2}};
   const struct scene *scene = scene_of(room);
   for (int k = 0; integrator_types[k]; k++)
     for (int nee = 0; nee < 2; nee++) {
       const struct integrator_type *type = integrator_types[k];
       struct measurement on = measure(scene, estimator, 2);
-      if (!strcmp(type->name, "probabilistic")) on.n_estimators = 1; // global laws only
+      estimator[1].law = law_find(type->independent ? "power" : "hachisuka");
+      estimator[1].k = type->takes_k ? 20 : 0;
       on.nee = nee;
       long n = (long)on.n_estimators * on.n_points * on.features.n_channels * ITERATIONS;
       double *all = frames_of(type, &on), *one[LIGHT_PATHS], total[LIGHT_PATHS] = {0};
@@ -154,8 +156,10 @@ static void photons_and_paths_agree_class_by_class(void **state) {
   (void)state;
   struct estimator estimator[3];
   for (int e = 0; e < 3; e++)
-    estimator[e] = (struct estimator){kernel_find("epanechnikov"), law_find("knaus-zwicker"), 1,
-                                      0.12 / (1 << e)};
+    estimator[e] = (struct estimator){.kernel = kernel_find("epanechnikov"),
+                                      .law = law_find("knaus-zwicker"),
+                                      .alpha = 1,
+                                      .r1 = 0.12 / (1 << e)};
   const struct scene *scene = scene_of(room);
   for (int c = 0; c < LIGHT_PATHS; c++) {
     struct measurement by_path = measure(scene, estimator, 1);

@@ -1,4 +1,5 @@
 // pbrt-v4's camera: fov spans the shorter axis, +z forward, +x right, +y up, image y down.
+#include "scene/camera.h"
 #include "scene_text.h"
 
 #include <float.h>
@@ -199,6 +200,75 @@ static void a_cropped_image_is_that_part_of_the_film(void **state) {
   check_crop("\"integer pixelbounds\" [12 100 7 8]", 12, 7, 88, 1);
 }
 
+// ---- the inverse ----
+
+static const char *const findable[] = {
+    "LookAt 3 1 0  0 0 .3  0 0 1 Camera \"perspective\" \"float fov\" 50 " WIDE WORLD,
+    "Scale -2 3 .5 Rotate 20 1 2 3 Camera \"perspective\" \"float screenwindow\" [-.5 2 -.25 .75] "
+    "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 \"float cropwindow\" "
+    "[.1 .35 .5 1] " WORLD,
+    "LookAt 3 1 0  0 0 .3  0 0 1 Camera \"perspective\" \"float lensradius\" .3 "
+    "\"float focaldistance\" 2.385 " WIDE WORLD,
+    "Scale 2 .7 1.3 Camera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -.5 .5] " WIDE WORLD,
+    "Translate 1 2 3 Camera \"orthographic\" \"float lensradius\" .25 \"float focaldistance\" "
+    "4 " WIDE WORLD,
+};
+
+// A point on a ray is found where the ray came from.
+static void a_point_is_found_on_the_ray_that_meets_it(void **state) {
+  (void)state;
+  struct draw draw = draw_named("a_point_is_found_on_the_ray_that_meets_it");
+  for (size_t s = 0; s < sizeof findable / sizeof *findable; s++) {
+    struct scene scene = scene_of(findable[s]);
+    struct camera_finder finder = camera_finder(&scene.camera);
+    for (int k = 0; k < 200; k++) {
+      double x = draw_between(&draw, -2, 32), y = draw_between(&draw, -2, 12), u[2];
+      draw_pair(&draw, &u[0], &u[1]);
+      struct ray ray = camera_ray(&scene.camera, x, y, u);
+      double t = draw_between(&draw, 0.1, 20);
+      struct sight sight;
+      assert_true(camera_find_point(&finder, vec_along(ray.o, ray.d, t), u, &sight));
+      // Rounding of p, at most 30 units off, comes back 30 / 0.1 times larger, in pixels 10 times
+      // more.
+      assert_true(fabs(sight.x - x) < 1e-11 && fabs(sight.y - y) < 1e-11);
+      assert_true(vec_length(vec_sub(sight.o, ray.o)) < 1e-12);
+      assert_true(vec_length(vec_sub(sight.d, ray.d)) < 1e-12 && fabs(sight.distance - t) < 1e-12);
+      struct vec behind = vec_along(ray.o, ray.d, -t);
+      assert_false(camera_find_point(&finder, behind, u, &sight));
+    }
+  }
+}
+
+// The film's area of a small square that faces the ray, by central differences of step h = 1e-4:
+// their error is about (h / distance)^2 = 1e-6 at the nearest.
+static void the_density_is_the_films_area_of_a_surface(void **state) {
+  (void)state;
+  struct draw draw = draw_named("the_density_is_the_films_area_of_a_surface");
+  const double h = 1e-4;
+  for (size_t s = 0; s < sizeof findable / sizeof *findable; s++) {
+    struct scene scene = scene_of(findable[s]);
+    struct camera_finder finder = camera_finder(&scene.camera);
+    for (int k = 0; k < 50; k++) {
+      double x = draw_between(&draw, -2, 32), y = draw_between(&draw, -2, 12), u[2];
+      draw_pair(&draw, &u[0], &u[1]);
+      struct ray ray = camera_ray(&scene.camera, x, y, u);
+      struct vec p = vec_along(ray.o, ray.d, draw_between(&draw, 0.3, 5)), axis[2];
+      struct sight sight, a, b;
+      double jacobian[2][2];
+      vec_basis(ray.d, &axis[0], &axis[1]);
+      assert_true(camera_find_point(&finder, p, u, &sight));
+      for (int j = 0; j < 2; j++) {
+        assert_true(camera_find_point(&finder, vec_along(p, axis[j], h), u, &a));
+        assert_true(camera_find_point(&finder, vec_along(p, axis[j], -h), u, &b));
+        jacobian[j][0] = (a.x - b.x) / (2 * h), jacobian[j][1] = (a.y - b.y) / (2 * h);
+      }
+      double area = fabs(jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0]);
+      if (!(fabs(sight.density / area - 1) < 2e-5))
+        fail_msg("camera %d: %g pixels^2, not %g", (int)s, sight.density, area);
+    }
+  }
+}
+
 static void exposure_is_shutter_time_and_iso(void **state) {
   (void)state;
   assert_true(scene_of(WORLD).settings.exposure == 1);
@@ -223,6 +293,8 @@ int main(void) {
       cmocka_unit_test(a_spherical_camera_sees_all_directions),
       cmocka_unit_test(the_default_sphere_has_equal_areas),
       cmocka_unit_test(a_cropped_image_is_that_part_of_the_film),
+      cmocka_unit_test(a_point_is_found_on_the_ray_that_meets_it),
+      cmocka_unit_test(the_density_is_the_films_area_of_a_surface),
       cmocka_unit_test(exposure_is_shutter_time_and_iso),
   };
   return cmocka_run_group_tests_name("camera", tests, NULL, NULL);

@@ -73,6 +73,25 @@ static void check_quantiles(const struct filter *filter) {
       if (!(fabs(share - u[axis]) <= 1e-13))
         fail_msg("%s: %.17g of the density is below the sample of %.17g", filter->type->name, share,
                  u[axis]);
+      double got = filter->type->density(filter, axis, offset[axis]), peak = 1 / r;
+      double wanted = known[k].density(offset[axis], r, filter->sigma) /
+                      (2 * integral(k, 0, r, r, filter->sigma));
+      if (!(fabs(got - wanted) <= 1e-11 * peak))
+        fail_msg("%s: density %.17g, not %.17g", filter->type->name, got, wanted);
+    }
+  }
+}
+
+static void there_is_no_density_beyond_the_radius(void **state) {
+  (void)state;
+  for (int k = 0; filter_types[k]; k++) {
+    struct filter filter = filter_default(filter_types[k]);
+    for (int axis = 0; axis < 2; axis++) {
+      double r = filter.radius[axis];
+      assert_true(filter.type->density(&filter, axis, 1.001 * r) == 0);
+      assert_true(filter.type->density(&filter, axis, -1.001 * r) == 0);
+      // Two pixels of a box do not both hold the line between them.
+      assert_true(filter.type->density(&filter, axis, r) == 0);
     }
   }
 }
@@ -149,6 +168,7 @@ static void the_error_function_is_right_to_a_few_ulp(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(samples_follow_the_density_of_every_filter),
+      cmocka_unit_test(there_is_no_density_beyond_the_radius),
       cmocka_unit_test(a_gaussian_may_be_wide_or_narrow),
       cmocka_unit_test(radii_are_pbrts),
       cmocka_unit_test(the_error_function_is_right_to_a_few_ulp),

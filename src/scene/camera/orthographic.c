@@ -16,6 +16,13 @@ static struct ray ray(const struct camera *camera, double x, double y) {
   return (struct ray){vec(x, y, 0), vec(0, 0, 1), INFINITY, PRIMITIVE_NONE};
 }
 
+static bool find(const struct camera *camera, struct vec p, double xy[2], struct vec *flow) {
+  (void)camera;
+  xy[0] = p.x, xy[1] = p.y;
+  *flow = vec(0, 0, 1);
+  return p.z > 0;
+}
+
 const struct camera_type camera_orthographic = {
     .name = "orthographic",
     .about = "parallel rays through the screen window",
@@ -23,4 +30,5 @@ const struct camera_type camera_orthographic = {
     .read = read,
     .set_window = set_window,
     .ray = ray,
+    .find = find,
 };

@@ -22,6 +22,15 @@ static struct ray ray(const struct camera *camera, double x, double y) {
   return (struct ray){vec(0, 0, 0), vec(x, y, 1), INFINITY, PRIMITIVE_NONE};
 }
 
+// A sphere's element seen from the centre, onto the plane z = 1.
+static bool find(const struct camera *camera, struct vec p, double xy[2], struct vec *flow) {
+  (void)camera;
+  if (!(p.z > 0)) return false;
+  xy[0] = p.x / p.z, xy[1] = p.y / p.z;
+  *flow = vec_scale(p, 1 / (p.z * p.z * p.z));
+  return true;
+}
+
 const struct camera_type camera_perspective = {
     .name = "perspective",
     .about = "a pinhole or thin lens, fov across the shorter axis",
@@ -29,4 +38,5 @@ const struct camera_type camera_perspective = {
     .read = read,
     .set_window = set_window,
     .ray = ray,
+    .find = find,
 };
