@@ -13,6 +13,8 @@ parts:
      reference: {integrator: path, se: 0.02}}
   - {scene: scenes/plane-quadratic-beam.pbrt, radius: 0.5, photons: 250, iterations: 20, runs: 18,
      depth: 1, probes: [[32, 32]], pixel: [centre, footprint]}
+  - {scene: scenes/cornell-box.pbrt, photons: 300, iterations: 3, runs: 2, probes: [[20, 60]],
+     reference-radius: [pixel, knn, ray-differentials], pixel: [centre, footprint]}
 YAML
 
 cat > "$scratch/long.yaml" <<'YAML'

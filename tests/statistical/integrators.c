@@ -1,5 +1,6 @@
 // Integrators against each other and against theory, on the same machinery as the box: pixels of a
 // rendered picture, probes of an experiment, a plane in two triangles or in a thousand.
+#include "estimate/reference_radius.h"
 #include "log/results.h"
 #include "moments/moments.h"
 #include "numeric/rng.h"
@@ -181,7 +182,8 @@ static void a_white_furnace_is_uniform(void **state) {
     assert_true(fabs(path[p].mean - 1) < 4.4 * sqrt(moments_se2(path[p])) + 1e-12);
 }
 
-// The same pixel: a probe of a few points, and the picture of the whole film.
+// The same pixel: a probe of a few points, and the picture of the whole film; with every reference
+// radius, which may differ from point to point.
 static void a_probe_is_the_pixel_that_render_gives(void **state) {
   (void)state;
   const struct scene *scene = scene_load("scenes/cornell-box.pbrt");
@@ -189,18 +191,25 @@ static void a_probe_is_the_pixel_that_render_gives(void **state) {
   struct pixel *film = arena_new(&arena, struct pixel, n);
   for (int j = 0; j < n; j++)
     film[j] = (struct pixel){j % scene->camera.width, j / scene->camera.width};
-  struct estimator estimator = estimator_of("cone", 0.5, 0.2);
   const struct pixel probe[2] = {{20, 60}, {32, 20}};
-  const char *const names[] = {"probabilistic", "path"};
-  for (int k = 0; k < 2; k++) {
+  const char *const names[] = {"path", "photonmap", "probabilistic"};
+  for (int k = 0; k < 2 + n_reference_radii; k++) {
+    const char *name = names[k < 2 ? k : 2];
+    struct estimator estimator = estimator_of("cone", 0.5, 0.2);
+    if (k >= 2) estimator.reference = &reference_radii[k - 2];
+    if (k >= 2 && !estimator.reference->global) estimator.r1 = 1;
+    if (k == 1 || (k >= 2 && estimator.reference->nearest)) estimator.k = 7;
     struct measurement of_film = measure(scene, film, n, &estimator, 1);
     struct measurement of_probes = measure(scene, probe, 2, &estimator, 1);
+    of_film.n_emitted = of_probes.n_emitted = 2000;
     struct image image;
     struct run_options options = {.threads = 2, .quiet = true};
-    assert_true(render_image(integrator_find(names[k]), &of_film, 1, options, &arena, &image));
-    struct moments *values = moments_over(names[k], &of_probes, 1, 1);
-    for (int p = 0; p < 2; p++)
+    assert_true(render_image(integrator_find(name), &of_film, 1, options, &arena, &image));
+    struct moments *values = moments_over(name, &of_probes, 1, 1);
+    for (int p = 0; p < 2; p++) {
+      assert_true(values[p].mean > 0);
       assert_true(image.plane[0][probe[p].y * image.width + probe[p].x] == (float)values[p].mean);
+    }
   }
 }
 
