@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct arena arena;
@@ -164,19 +165,91 @@ static void photons_and_paths_agree_class_by_class(void **state) {
   for (int c = 0; c < LIGHT_PATHS; c++) {
     struct measurement by_path = measure(scene, estimator, 1);
     by_path.left_out = LIGHT_PATH_ALL & ~(unsigned)light_paths[c].bit;
-    struct moments paths = film_mean(integrator_find("path"), &by_path, 2500);
+    struct moments paths = film_mean(integrator_find("path"), &by_path, 2000);
     bool direct = light_paths[c].bit == LIGHT_PATH_DIRECT; // else nee changes nothing
     for (int nee = 0; nee < (direct ? 2 : 1); nee++) {
       struct measurement by_photons = measure(scene, estimator, 3);
       by_photons.left_out = by_path.left_out;
       by_photons.nee = nee;
-      by_photons.n_emitted = 5000;
+      by_photons.n_emitted = 4000;
       by_photons.seed++;
-      struct moments photons = film_mean(integrator_find("probabilistic"), &by_photons, 250);
+      struct moments photons = film_mean(integrator_find("probabilistic"), &by_photons, 200);
       double se = sqrt(moments_se2(photons) + moments_se2(paths));
       double z = (photons.mean - paths.mean) / se;
       if (!(fabs(z) < 5.3))
         fail_msg("%s: %g and %g, z %g", light_paths[c].name, photons.mean, paths.mean, z);
+    }
+  }
+}
+
+// ---- direct light ----
+
+enum { REGIONS = 5, RUNS = 60, PER_RUN = 2 };
+
+// The film and its quadrants, of a frame of 8 x 8 pixels.
+static void region_means(const double *frame, double mean[REGIONS]) {
+  memset(mean, 0, REGIONS * sizeof *mean);
+  for (int j = 0; j < 64; j++) {
+    int quadrant = 1 + j / 32 * 2 + j % 8 / 4;
+    mean[0] += frame[j] / 64, mean[quadrant] += frame[j] / 16;
+  }
+}
+
+// Extrapolated to radius zero, as film_mean, over the iterations of one run.
+static void run_means(const struct integrator_type *type, void *state, uint64_t run,
+                      double out[REGIONS]) {
+  static const double weight[3] = {1.0 / 3, -2, 8.0 / 3};
+  double frame[3][64], mean[REGIONS];
+  memset(out, 0, REGIONS * sizeof *out);
+  type->begin(state, run);
+  for (uint64_t i = 1; i <= PER_RUN; i++) {
+    type->step(state, i, frame[0]);
+    for (int e = 0; e < 3; e++) {
+      region_means(frame[e], mean);
+      for (int r = 0; r < REGIONS; r++) out[r] += weight[e] * mean[r] / PER_RUN;
+    }
+  }
+}
+
+// Direct light by photons minus that by next-event estimation, from the same eye points and the
+// same photons otherwise. Level 1e-6 over the 20 tests: |z| < 5.5. The film's
+// standard error is 5 % of the direct light: found with probability 0.95 is a difference of 35 %.
+static void direct_light_by_photons_and_by_nee_is_the_same_image(void **state) {
+  (void)state;
+  const struct scene *scene = scene_of(room);
+  for (int k = 0; integrator_types[k]; k++) {
+    const struct integrator_type *type = integrator_types[k];
+    if (!type->photons) continue;
+    struct estimator estimator[3];
+    for (int e = 0; e < 3; e++)
+      estimator[e] =
+          (struct estimator){.kernel = kernel_find("epanechnikov"),
+                             .law = law_find(type->independent ? "knaus-zwicker" : "hachisuka"),
+                             .alpha = 1, // keeps the radius
+                             .r1 = 0.16 / (1 << e)};
+    struct measurement by_photons = measure(scene, estimator, 3);
+    by_photons.depth = 3; // caustics of the ball among them
+    struct measurement by_nee = by_photons;
+    by_nee.nee = true;
+    assert_int_equal(by_nee.n_points * by_nee.features.n_channels, 64);
+    void *one = type->create(&by_photons, &arena), *other = type->create(&by_nee, &arena);
+    struct moments difference[REGIONS] = {{0}};
+    double direct = 0;
+    for (uint64_t run = 1; run <= RUNS; run++) {
+      double a[REGIONS], b[REGIONS];
+      run_means(type, one, run, a), run_means(type, other, run, b);
+      direct += b[0] / RUNS;
+      for (int r = 0; r < REGIONS; r++)
+        difference[r] = moments_merge(difference[r], moments_of(a[r] - b[r]));
+    }
+    for (int r = 0; r < REGIONS; r++) {
+      double se = sqrt(moments_se2(difference[r])), z = difference[r].mean / se;
+      if (getenv("VIEWS_VERBOSE"))
+        print_message("%-14s %d: %g of %g, se %g, z %.2f\n", type->name, r, difference[r].mean,
+                      direct, se, z);
+      if (!(fabs(z) < 5.5))
+        fail_msg("%s, region %d: by photons %g more of %g, z %g", type->name, r, difference[r].mean,
+                 direct, z);
     }
   }
 }
@@ -186,6 +259,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(classes_add_up_to_all_for_every_integrator),
       cmocka_unit_test(photons_and_paths_agree_class_by_class),
+      cmocka_unit_test(direct_light_by_photons_and_by_nee_is_the_same_image),
   };
   return cmocka_run_group_tests_name("views", tests, NULL, NULL);
 }
