@@ -155,7 +155,9 @@ static void meet(struct light_tracer *state, double *frame) {
     struct bsdf bsdf = walk_bsdf(walk, j, &surface);
     if (!bsdf.type) continue;
     connect(state, j, &surface, &bsdf);
-    if (!last && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
+    if (!last && walk_scatter(walk, j, &surface, &bsdf) &&
+        !light_path_ends(walk->kind[j], state->measure->left_out))
+      walk_move(walk, alive++, j);
   }
   walk->n = alive;
   memset(state->seen, 0, (size_t)(state->n_marks * walk->n_channels) * sizeof *state->seen);

@@ -99,7 +99,9 @@ static void meet(const struct path *state, double *frame) {
     struct bsdf bsdf = walk_bsdf(walk, j, &surface);
     if (!bsdf.type) continue;
     connect(state, j, &surface, &bsdf);
-    if (walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
+    if (walk_scatter(walk, j, &surface, &bsdf) &&
+        !light_path_ends(walk->kind[j], state->measure->left_out))
+      walk_move(walk, alive++, j);
   }
   connect_finish(walk, frame);
   walk->n = alive;

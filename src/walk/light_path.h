@@ -30,4 +30,9 @@ static inline enum light_path light_path_after(enum light_path before, bool delt
   return LIGHT_PATH_CAUSTICS;
 }
 
+// Whether all that may follow is left out too: indirect light stays indirect.
+static inline bool light_path_ends(enum light_path kind, unsigned left_out) {
+  return kind == LIGHT_PATH_INDIRECT && (left_out & LIGHT_PATH_INDIRECT);
+}
+
 #endif
