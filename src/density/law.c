@@ -85,11 +85,14 @@ const struct law laws[] = {
    knaus_zwicker_rho, shrinking_exponent, "1/Gamma(1 + alpha)", num_rgamma1p, NULL},
   {"power", "i^(alpha - 1)", "Georgiev et al. 2012",
    power_rho, shrinking_exponent, "1", one, NULL},
-  {"smallvcm", "i^(alpha - 1), the same as power", "SmallVCM (alpha = 0.75 and a least radius of 1e-7 there)",
+  {"smallvcm", "i^(alpha - 1), the same as power",
+   "SmallVCM (alpha = 0.75 and a least radius of 1e-7 there)",
    power_rho, shrinking_exponent, "1", one, NULL},
-  {"hachisuka", "local: (N + alpha M)/(N + M) a pass, N = M at first", "Hachisuka, Ogaki and Jensen 2008",
+  {"hachisuka", "local: (N + alpha M)/(N + M) a pass, N = M at first",
+   "Hachisuka, Ogaki and Jensen 2008",
    knaus_zwicker_rho, shrinking_exponent, "1/Gamma(1 + alpha)", num_rgamma1p, hachisuka_count},
-  {"pbrt", "local: (N + alpha M)/(N + M) a pass, N = 0 at first", "pbrt-v3 and pbrt-v4 (alpha = 2/3 there)",
+  {"pbrt", "local: (N + alpha M)/(N + M) a pass, N = 0 at first",
+   "pbrt-v3 and pbrt-v4 (alpha = 2/3 there)",
    pbrt_rho, shrinking_exponent, "alpha/Gamma(1 + alpha)", pbrt_constant, keep_fraction},
 };
 // clang-format on

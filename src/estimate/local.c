@@ -111,7 +111,8 @@ static double largest_radius(const struct local *local, int point) {
   return sqrt(r2);
 }
 
-// The level of each point that scatters light; returns the largest of their radii.
+// The level of each point that scatters light; returns the largest of their radii, 0: there is
+// none.
 static double set_levels(struct local *local) {
   const struct measurement *measure = local->map->measure;
   double r1 = largest_r1(measure), largest = 0;
@@ -198,7 +199,8 @@ static void shrink(struct local *local, const int64_t *found, int point, uint64_
 void local_pass(struct local *local, uint64_t i, double *frame) {
   const struct measurement *measure = local->map->measure;
   memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
-  emit(local, i, set_levels(local));
+  double r = set_levels(local);
+  if (r > 0) emit(local, i, r);
   build_grids(local);
 #pragma omp parallel for schedule(dynamic, POINTS_AT_ONCE) num_threads(local->n_workers)
   for (int j = 0; j < measure->n_points; j++) {

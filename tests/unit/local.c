@@ -200,6 +200,22 @@ static void light_from_the_other_side_neither_contributes_nor_shrinks_the_radius
   }
 }
 
+// Eyes that look past everything: no radius, no photon is asked for.
+static void points_that_see_nothing_stay_dark(void **state) {
+  (void)state;
+  struct scene scene =
+      scene_of("Scale -1 1 1\nLookAt 0 0 4  0 0 8  0 1 0\nCamera \"perspective\"\n"
+               "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n"
+               "LightSource \"point\" \"point3 from\" [0 0 1]\nShape \"disk\"\n");
+  const struct estimator estimator = estimator_of("box", "hachisuka", 0.5, 0.2);
+  static const char *const names[] = {"ppm", "sppm"};
+  for (int k = 0; k < 2; k++) {
+    struct measurement measure = measure_of(&scene, &estimator, 1);
+    double *average = average_of(names[k], &measure, 3);
+    for (long j = 0; j < photon_map_frame(&measure); j++) assert_true(average[j] == 0);
+  }
+}
+
 // ---- a point depends on itself alone ----
 
 static void any_number_of_threads_gives_the_same_bits(void **state) {
@@ -366,6 +382,7 @@ int main(void) {
       TEST(the_flux_rule_is_the_average_of_the_passes),
       TEST(radii_and_counts_are_those_of_the_book),
       TEST(light_from_the_other_side_neither_contributes_nor_shrinks_the_radius),
+      TEST(points_that_see_nothing_stay_dark),
       TEST(any_number_of_threads_gives_the_same_bits),
       TEST(a_probe_is_the_pixel_of_the_film),
       TEST(with_a_global_law_they_are_probabilistic),
