@@ -19,7 +19,7 @@ enum vertex_pair {
   VERTEX_DIRECTION, // of scattering
   VERTEX_CHOICE,    // u0: component of the material; u1: roulette
   VERTEX_LIGHT,     // u0: which light, of next-event estimation; u1: the material's own (bsdf.u)
-  VERTEX_EMITTER,   // where on that light
+  VERTEX_EMITTER,   // where on that light; light tracing: on the lens
 };
 
 // Vertex 0 is the first surface a path meets.
