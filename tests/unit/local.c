@@ -4,6 +4,7 @@
 #include "estimate/reference_radius.h"
 #include "integrator/integrator.h"
 #include "run/plan.h"
+#include "run/render.h"
 #include "scene_text.h"
 
 #include <float.h>
@@ -261,6 +262,27 @@ static void a_probe_is_the_pixel_of_the_film(void **state) {
   }
 }
 
+// The picture is the mean of one run's iterations in order, by any number of threads.
+static void render_takes_iterations_that_depend_on_each_other(void **state) {
+  (void)state;
+  struct scene scene = scene_of(two_sides);
+  struct estimator estimator = estimator_of("box", "hachisuka", 0.4, 0.3);
+  struct pixel film[64];
+  for (int j = 0; j < 64; j++) film[j] = (struct pixel){j % 8, j / 8};
+  struct measurement measure = measure_of(&scene, &estimator, 1);
+  measure.pixel = film, measure.n_points = 64;
+  double *mean = average_of("ppm", &measure, 10);
+  struct image one, three;
+  struct run_options options = {.threads = 1, .quiet = true};
+  assert_true(render_image(integrator_find("ppm"), &measure, 10, options, &arena, &one));
+  options.threads = 3;
+  assert_true(render_image(integrator_find("ppm"), &measure, 10, options, &arena, &three));
+  for (int c = 0; c < 3; c++) {
+    assert_memory_equal(one.plane[c], three.plane[c], 64 * sizeof *one.plane[c]);
+    for (int j = 0; j < 64; j++) near(one.plane[c][j], mean[3 * j + c], FLT_EPSILON);
+  }
+}
+
 // With a law that follows i alone nothing is left of the local statistics. The grids differ, and
 // with them the order of the sums: 1e-13.
 static void with_a_global_law_they_are_probabilistic(void **state) {
@@ -385,6 +407,7 @@ int main(void) {
       TEST(points_that_see_nothing_stay_dark),
       TEST(any_number_of_threads_gives_the_same_bits),
       TEST(a_probe_is_the_pixel_of_the_film),
+      TEST(render_takes_iterations_that_depend_on_each_other),
       TEST(with_a_global_law_they_are_probabilistic),
       TEST(hit_points_are_spread_over_the_pixel),
       TEST(the_mean_of_equal_hit_points_is_one_of_them),
