@@ -2,6 +2,7 @@
 #define _GNU_SOURCE // readlink
 #include "analysis/fit.h"
 #include "app/cli.h"
+#include "app/pixels.h"
 #include "base/file.h"
 #include "run/interrupt.h"
 #include "run/run.h"
@@ -69,6 +70,7 @@ static int plot(struct cli *cli, struct problem *problem) {
     return problem_set(problem, "paper-figures: neither %s.gp nor default.gp is there", name), 1;
   char *figures = arena_format(cli->arena, "%s/figures", cli->argument);
   if (!file_make_directory(figures, problem)) return 1;
+  if (!pixels_write(cli->argument, *cli->arena, problem)) return 1;
   char *const words[] = {"gnuplot", "-c", script, (char *)cli->argument, NULL};
   pid_t child;
   int status;
