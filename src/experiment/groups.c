@@ -17,7 +17,7 @@ static bool same_images(const struct cell *a, const struct cell *b) {
           memcmp(a->image, b->image, (size_t)a->n_images * sizeof *a->image) == 0);
 }
 
-// Everything but kernel, law, alpha and radius, and what the analysis alone looks at.
+// Everything but kernel, law, alpha, radius, its reference and k, and what the analysis alone looks at.
 static bool same_paths(const struct cell *a, const struct cell *b) {
   return a->photons == b->photons && a->depth == b->depth && a->direct == b->direct &&
          a->left_out == b->left_out && a->seed == b->seed && a->runs == b->runs &&

@@ -12,7 +12,7 @@ const struct log_column log_columns[] = {
     {"alpha", "1", "fraction kept"},
     {"series", "name", "iteration: of iteration i alone; average: running average of 1..i"},
     {"i", "1", "iteration, from 1"},
-    {"radius", "scene unit", "kernel support of iteration i"},
+    {"radius", "reference radius", "kernel support of iteration i; scene unit where it is global"},
     {"n", "1", "runs"},
     {"mean", "W sr^-1 m^-2", "mean over runs of the luminance of radiance"},
     {"m2", "(W sr^-1 m^-2)^2", "sum over runs of (x - mean)^2"},
