@@ -104,14 +104,18 @@ static struct vec places_of(const struct animation *a, struct vec p, int step, d
 }
 
 // What a box passes through: an affine image of it lies within its corners' images. Vertices are
-// rounded to float, so a unit in the last place of one is added.
+// rounded to float, so a unit in the last place of one is added. Arithmetic that overflows leads
+// anywhere.
 static struct box swept(const struct animation *a, struct box box) {
+  static const struct box everywhere = {{-INFINITY, -INFINITY, -INFINITY},
+                                        {INFINITY, INFINITY, INFINITY}};
   struct box all = box_empty();
   for (int corner = 0; corner < 8; corner++)
     for (int step = 0; step <= ANIMATION_STEPS; step++) {
       double slack;
       struct vec p = places_of(a, corner_of(&box, corner), step, &slack);
       slack += (fabs(p.x) + fabs(p.y) + fabs(p.z)) * (double)FLT_EPSILON;
+      if (!(slack < INFINITY)) return everywhere;
       all = box_union(all, box_around(p, vec(slack, slack, slack), vec(slack, slack, slack)));
     }
   return all;
