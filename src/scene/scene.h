@@ -63,6 +63,7 @@ struct quadric {
   double radius, z_min, z_max; // sphere, cylinder
   double height, inner_radius; // disk
   double phi_max;              // radians
+  double mean_stretch;         // of area by world_from_object; 0: the same everywhere
 };
 
 // A shape that moves: its point p is at instance * object * p, and scene.position, normal or quadric
