@@ -113,7 +113,7 @@ static void tiny_and_huge_scales_are_decomposed(void **state) {
   "\"point3 P\" [-1 0 -1 1 0 -1 1 0 1 -1 0 1]\n"
 #define BENT                                                                                       \
   "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1 1 0 -1 1 0 1] "                                    \
-  "\"normal N\" [0 1 0 .6 .8 0 0 .6 .8]\n"                                                         \
+  "\"normal N\" [0 1 0 .6 .8 0 0 .6 .8] \"vector3 S\" [1 0 0 0 .5 0 .6 0 .8]\n"                    \
   "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]\n"
 #define TIMES "TransformTimes .5 2.5 "
 #define LIGHT "LightSource \"point\"\n"
@@ -135,6 +135,11 @@ static void check_at_a_quarter(const char *moving, const char *still) {
   for (uint32_t k = 0; k < copy->n_normals; k++)
     for (int axis = 0; axis < 3; axis++)
       assert_true(fabs((double)copy->normal[k][axis] - (double)other.normal[k][axis]) <=
+                  4 * FLT_EPSILON);
+  assert_int_equal(other.n_tangents, copy->n_tangents);
+  for (uint32_t k = 0; k < copy->n_tangents; k++)
+    for (int axis = 0; axis < 3; axis++)
+      assert_true(fabs((double)copy->tangent[k][axis] - (double)other.tangent[k][axis]) <=
                   4 * FLT_EPSILON);
   for (uint32_t p = 0; p < copy->n_primitives; p++) { // the same side faces outward
     const struct shape *shape = &copy->shape[copy->shape_of[p]];
