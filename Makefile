@@ -191,6 +191,7 @@ test: $(binary) $(test_programs) $(conformance)
 	  $(test_programs) $(cli_tests)
 
 conformance: $(conformance)
+	@$(if $(SCENE),:,[ ! -d $(CONFORMANCE) ] || $(folders) tests/conformance/pbrt-coat)
 	@$(folders) OUTPUT=build/conformance $(conformance) --full $(if $(IMAGES),--images) \
 	  $(if $(SCENE),--scene $(SCENE))
 

@@ -15,8 +15,8 @@ static const char no_media[] = "participating media are not in this version";
 // pbrt-v4's LayeredBxDF::f weighs the second of its two ways through a rough coat with the density
 // of sampling wi from w instead of w from wi. For eta 1.5 and alpha 0.1^(1/2) that is 5.5 % too
 // much for light along the normal, 7 % at 36 degrees, 12.5 % at 72 degrees; in c06 it is seen on
-// the sphere at the left. With these factors on our light samples c06 agrees everywhere. (Its
-// Sample_f is right, so no BSDF renders as pbrt-v4 does.)
+// the sphere at the left. (Its Sample_f is right, so no BSDF renders as pbrt-v4 does.) A copy with
+// its value agrees in all blocks: tests/conformance/pbrt-coat.
 static const struct doubt coat = {{11, 40, 16, 18}, 0.111};
 
 const struct conformance_scene conformance_scenes[] = {
