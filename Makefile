@@ -235,7 +235,7 @@ fuzz-coverage:
 	@tests/fuzz/coverage $(fuzz_sources:tests/%.c=build/coverage/tests/%)
 
 test-bits: $(binary)
-	@PHOTONLAB=$(binary) tests/run tests/bits
+	@TIME_LIMIT_S=900 PHOTONLAB=$(binary) tests/run tests/bits
 
 test-plants:
 	@tests/plants/run
