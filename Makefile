@@ -179,17 +179,19 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 .PHONY: test conformance test-programs test-asan test-tsan test-bits test-plants validate
 test-programs: $(test_programs)
 
-test: $(binary) $(test_programs)
-	@PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(test_programs) $(cli_tests)
-
-# Absent folders of pbrt-v4's scenes and images are skipped.
+# Folders of pbrt-v4's scenes and images; absent ones are skipped.
 CONFORMANCE = ../shared/conformance
 SCENES = ../shared/scenes
 IMAGES =# of all scenes, not only of those that fail: 1
 SCENE =# only those whose name contains this
 folders = CONFORMANCE=$(CONFORMANCE) SCENES=$(SCENES)
 
+test: $(binary) $(test_programs) $(conformance)
+	@$(folders) PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(conformance) \
+	  $(test_programs) $(cli_tests)
+
 conformance: $(conformance)
+	@$(if $(SCENE),:,[ ! -d $(CONFORMANCE) ] || $(folders) tests/conformance/pbrt-coat)
 	@$(folders) OUTPUT=build/conformance $(conformance) --full $(if $(IMAGES),--images) \
 	  $(if $(SCENE),--scene $(SCENE))
 
@@ -233,7 +235,7 @@ fuzz-coverage:
 	@tests/fuzz/coverage $(fuzz_sources:tests/%.c=build/coverage/tests/%)
 
 test-bits: $(binary)
-	@PHOTONLAB=$(binary) tests/run tests/bits
+	@TIME_LIMIT_S=900 PHOTONLAB=$(binary) tests/run tests/bits
 
 test-plants:
 	@tests/plants/run

@@ -7,6 +7,7 @@
 #   results       the directory; curves.csv is read, figures/FIGURE.* is written
 #   figure        name of the figure
 #   scenes, names of the columns and their titles; "": the first six of the file
+#   only          integrators whose cells are shown; "": all
 #   slopes        1: a curve of alpha ends with theory's power of N, if alpha is all that varies
 
 # ---- inputs: gnuplot itself exits 0 when data are missing ----
@@ -78,8 +79,9 @@ add_biased(c, q, p) = q eq "variance" || p == 0 || strstrt(biased, sprintf("|%d|
   (biased = biased.sprintf("|%d|", c), 1)
 add_value(i, j) = (values[i] = values[i].strcol(word(keys, j))." ", 0)
 add_cell(i, c) = scene_of[i] ? 0 : (scene_of[i] = c, sum [j = 1:n_keys] add_value(i, j))
-# Rows of a scene that is shown, at its probe that is shown.
-take(i, c, q, xy) = c == 0 ? 0 : (add_pixel(c, xy), add_biased(c, q, column("predicted")), \
+# Rows of a scene and of an integrator that are shown, at the probe that is shown.
+is_named(s, list) = list eq "" || strstrt(" ".list." ", " ".s." ") > 0
+take(i, c, q, xy) = c == 0 || !is_named(strcol("integrator"), only) ? 0 : (add_pixel(c, xy), add_biased(c, q, column("predicted")), \
   pixel[c] ne xy ? 0 : (add_cell(i, c), !visible(q) ? 0 : add_row(row_name(q, i)), \
     add_line(row_name(q, i), column("predicted"))))
 set table $seen
@@ -110,6 +112,10 @@ do for [j = 1:n_keys] {
   } }
   if (varies) { varied = varied." ".j }
 }
+# What else varies tells the curves apart better than their random numbers.
+unseeded = ""
+do for [j in varied] { if (word(keys, int(j)) ne "seed") { unseeded = unseeded." ".j } }
+if (unseeded ne "") { varied = unseeded }
 value_text(v) = !strstrt(v, ".") ? v : abs(v - 2./3) < 1e-9 ? "2/3" : sprintf("%g", real(v))
 key_text(k) = k eq "alpha" ? "α" : k
 

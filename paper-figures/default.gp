@@ -5,6 +5,7 @@
 scenes = ""
 names = ""
 figure = "default"
+only = ""
 slopes = 0
 results = ARG1
 load system("dirname \"".ARG0."\"")."/convergence.part.gp"

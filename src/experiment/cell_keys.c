@@ -63,7 +63,7 @@ static const char *key_seed(const struct cell *cell, int digits, char *buffer) {
 const struct cell_key cell_keys[CELL_KEYS] = {
     {"cell", KEY_COUNT, false, key_cell},
     {"scene", KEY_NAME, true, key_scene},
-    {"integrator", KEY_NAME, false, key_integrator},
+    {"integrator", KEY_NAME, true, key_integrator},
     {"kernel", KEY_NAME, false, key_kernel},
     {"law", KEY_NAME, false, key_law},
     {"alpha", KEY_REAL, true, key_alpha},

@@ -1,6 +1,7 @@
 #include "scene/layered.h"
 #include "numeric/rng.h"
 
+#include <float.h>
 #include <string.h>
 
 static const double one_over_4pi = 0x1.45f306dc9c883p-4, one_over_pi = 0x1.45f306dc9c883p-2;
@@ -154,14 +155,14 @@ static void connect_smooth(struct walk *walk, struct vec back) {
   double direct = phase(l->g, vec_dot(back, up)) * coat_attenuation(l->thickness - walk->z, up.z);
   double by_metal =
       phase(l->g, vec_dot(back, down)) * coat_attenuation(l->thickness + walk->z, up.z);
-  double fresnel = fresnel_dielectric(walk->exit.z, l->coat.eta), sum[3];
+  double fresnel = fresnel_dielectric(walk->exit.z, l->coat.eta), metal[3], sum[3] = {0};
+  conductor_fresnel(&l->conductor, up.z, 1, metal);
   for (int c = 0; c < 3; c++) {
-    double metal = fresnel_conductor(up.z, l->conductor.eta[c], l->conductor.k[c]), power = 1;
-    sum[c] = 0;
-    for (int depth = walk->depth + 1; depth < l->max_depth; depth += 2) {
+    double power = 1;
+    for (int depth = walk->depth + 1; depth < l->max_depth && power > DBL_EPSILON; depth += 2) {
       sum[c] += power * direct;
-      if (depth + 1 < l->max_depth) sum[c] += power * by_metal * metal;
-      power *= fresnel * metal * turn;
+      if (depth + 1 < l->max_depth) sum[c] += power * by_metal * metal[c];
+      power *= fresnel * metal[c] * turn;
     }
   }
   add(walk, walk->exit_weight / up.z, sum);

@@ -12,11 +12,14 @@ void layered_delta(const struct layered *l, struct vec wo, double rgb[3]) {
   if (!layered_is_smooth(l) || !(fresnel < 1)) return;
   double inside = sqrt(fresnel_snell(cosine, l->coat.eta)) / l->coat.eta;
   double through = coat_attenuation(l->thickness, inside);
+  double r[3];
+  conductor_fresnel(&l->conductor, inside, through * through, r);
   for (int c = 0; c < 3; c++) {
-    double r = fresnel_conductor(inside, l->conductor.eta[c], l->conductor.k[c]);
-    r *= through * through;
-    double term = (1 - fresnel) * (1 - fresnel) * r;
-    for (int i = 0; i < l->max_depth / 2; i++, term *= fresnel * r) rgb[c] += term;
+    double term = (1 - fresnel) * (1 - fresnel) * r[c];
+    for (int i = 0; i < l->max_depth / 2 && rgb[c] + term > rgb[c]; i++) {
+      rgb[c] += term;
+      term *= fresnel * r[c];
+    }
   }
 }
 
@@ -27,21 +30,22 @@ struct lobes {
   double coat, conductor, cosine; // probabilities
 };
 
+// Of what the coat reflects at wo only half is taken from the base, so that the base is sampled at
+// grazing angles and under total reflection too.
+static double inside_share(const struct layered *l, double fresnel) {
+  double base[3] = {l->reflectance[0], l->reflectance[1], l->reflectance[2]};
+  if (l->is_conductor) conductor_fresnel(&l->conductor, 1, 1, base);
+  double reflected = layered_max3(base), scattered = layered_max3(l->albedo);
+  return (1 - fresnel / 2) * (reflected > scattered ? reflected : scattered);
+}
+
 static struct lobes lobes_of(const struct layered *l, struct vec wo) {
-  bool medium = layered_has_medium(l);
-  if (layered_is_smooth(l) && !medium) return (struct lobes){.coat = 1};
-  double fresnel = fresnel_dielectric(fabs(wo.z), l->coat.eta), base[3];
-  for (int c = 0; c < 3; c++)
-    base[c] = l->is_conductor ? fresnel_conductor(1, l->conductor.eta[c], l->conductor.k[c])
-                              : l->reflectance[c];
-  // Half of the coat's part is not taken from the base, so that it is sampled at grazing angles and
-  // under total reflection too.
-  double scattered = layered_max3(l->albedo), inside = layered_max3(base);
-  inside = (1 - fresnel / 2) * (inside > scattered ? inside : scattered);
   if (layered_is_smooth(l)) { // the medium in the last lobe, all smooth paths in the first
-    double thin = 1 - coat_attenuation(2 * l->thickness, 1);
-    return (struct lobes){.coat = 1 - thin / 2, .cosine = thin / 2};
+    double medium = layered_has_medium(l) ? 1 - coat_attenuation(2 * l->thickness, 1) : 0;
+    return (struct lobes){.coat = 1 - medium / 2, .cosine = medium / 2};
   }
+  double fresnel = fresnel_dielectric(fabs(wo.z), l->coat.eta);
+  double inside = inside_share(l, fresnel);
   if (!(fresnel + inside > 0)) return (struct lobes){.coat = 1};
   struct lobes lobes = {.coat = fresnel / (fresnel + inside)};
   double rest = 1 - lobes.coat;

@@ -8,7 +8,8 @@
 #include <string.h>
 
 struct motion_start motion_start(const struct scene *scene) {
-  return (struct motion_start){scene->n_shapes, scene->n_positions, scene->n_normals};
+  return (struct motion_start){scene->n_shapes, scene->n_positions, scene->n_normals,
+                               scene->n_tangents};
 }
 
 // ---- where it is ----
@@ -23,25 +24,31 @@ static void move_vertices(struct scene *scene, const struct motion *motion,
   }
 }
 
-static struct vec moved_normal(const struct transform *object_from_world, const float n[3]) {
-  return transform_normal(object_from_world, vec((double)n[0], (double)n[1], (double)n[2]));
+static struct vec moved(const struct transform *t, const float v[3]) {
+  return transform_direction(t, vec((double)v[0], (double)v[1], (double)v[2]));
 }
 
-// Their lengths keep their ratios, the longest is 1, as where nothing moves (build_mesh.c).
-static void move_normals(struct scene *scene, const struct motion *motion,
-                         const struct transform *object_from_world) {
-  if (motion->n_normals == 0) return;
-  float(*to)[3] = scene->normal + scene->shape[motion->shape].normal;
+// Normals and tangents: their lengths keep their ratios, the longest is 1, as where nothing moves
+// (build_mesh.c).
+static void move_vectors(float (*to)[3], float (*from)[3], uint32_t n, const struct transform *t) {
   double longest = 0;
-  for (uint32_t k = 0; k < motion->n_normals; k++) {
-    double length = vec_length(moved_normal(object_from_world, motion->normal[k]));
+  for (uint32_t k = 0; k < n; k++) {
+    double length = vec_length(moved(t, from[k]));
     longest = length > longest ? length : longest;
   }
-  for (uint32_t k = 0; k < motion->n_normals; k++) {
-    struct vec n = moved_normal(object_from_world, motion->normal[k]);
-    n = longest > 0 ? vec_scale(n, 1 / longest) : n;
-    to[k][0] = (float)n.x, to[k][1] = (float)n.y, to[k][2] = (float)n.z;
+  for (uint32_t k = 0; k < n; k++) {
+    struct vec v = moved(t, from[k]);
+    v = longest > 0 ? vec_scale(v, 1 / longest) : v;
+    to[k][0] = (float)v.x, to[k][1] = (float)v.y, to[k][2] = (float)v.z;
   }
+}
+
+// The inverse's transpose, which moves normals.
+static struct transform transpose(const struct transform *t) {
+  struct transform transposed = transform_identity();
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) transposed.m[i][j] = t->m[j][i];
+  return transposed;
 }
 
 static struct transform place_at(const struct motion *motion, double share) {
@@ -64,7 +71,11 @@ static void move_shape(struct scene *scene, const struct motion *motion, double 
     return;
   }
   move_vertices(scene, motion, &t);
-  move_normals(scene, motion, &inverse);
+  struct transform of_normals = transpose(&inverse);
+  if (motion->n_normals)
+    move_vectors(scene->normal + shape->normal, motion->normal, motion->n_normals, &of_normals);
+  if (motion->n_tangents)
+    move_vectors(scene->tangent + shape->tangent, motion->tangent, motion->n_tangents, &t);
 }
 
 void motion_set(struct scene *copy, double time) {
@@ -86,6 +97,7 @@ struct scene *motion_copy(const struct scene *scene, struct arena *arena) {
   if (scene->n_motions == 0) return copy;
   copy->position = copy_of(arena, scene->position, scene->n_positions, sizeof *copy->position);
   copy->normal = copy_of(arena, scene->normal, scene->n_normals, sizeof *copy->normal);
+  copy->tangent = copy_of(arena, scene->tangent, scene->n_tangents, sizeof *copy->tangent);
   copy->quadric = copy_of(arena, scene->quadric, scene->n_quadrics, sizeof *copy->quadric);
   return copy;
 }
@@ -104,14 +116,18 @@ static struct vec places_of(const struct animation *a, struct vec p, int step, d
 }
 
 // What a box passes through: an affine image of it lies within its corners' images. Vertices are
-// rounded to float, so a unit in the last place of one is added.
+// rounded to float, so a unit in the last place of one is added. Arithmetic that overflows leads
+// anywhere.
 static struct box swept(const struct animation *a, struct box box) {
+  static const struct box everywhere = {{-INFINITY, -INFINITY, -INFINITY},
+                                        {INFINITY, INFINITY, INFINITY}};
   struct box all = box_empty();
   for (int corner = 0; corner < 8; corner++)
     for (int step = 0; step <= ANIMATION_STEPS; step++) {
       double slack;
       struct vec p = places_of(a, corner_of(&box, corner), step, &slack);
       slack += (fabs(p.x) + fabs(p.y) + fabs(p.z)) * (double)FLT_EPSILON;
+      if (!(slack < INFINITY)) return everywhere;
       all = box_union(all, box_around(p, vec(slack, slack, slack), vec(slack, slack, slack)));
     }
   return all;
@@ -141,7 +157,8 @@ bool motion_add(struct scene_builder *builder, struct params *params,
                           .instance = place->instance,
                           .object = place->object,
                           .n_vertices = scene->n_positions - start->position,
-                          .n_normals = scene->n_normals - start->normal};
+                          .n_normals = scene->n_normals - start->normal,
+                          .n_tangents = scene->n_tangents - start->tangent};
   const struct shape *shape = &scene->shape[motion.shape];
   if (shape->count == 0) return true;
   assert(motion.n_vertices == 0 || shape->vertex == start->position);
@@ -151,6 +168,9 @@ bool motion_add(struct scene_builder *builder, struct params *params,
   if (motion.n_normals)
     motion.normal = copy_of(builder->arena, scene->normal + start->normal, motion.n_normals,
                             sizeof *motion.normal);
+  if (motion.n_tangents)
+    motion.tangent = copy_of(builder->arena, scene->tangent + start->tangent, motion.n_tangents,
+                             sizeof *motion.tangent);
   motion.bounds = swept(&motion.instance, swept(&motion.object, bounds_of(scene, &motion)));
   if (!box_is_finite(&motion.bounds))
     return params_complain(params, "P", "it moves out of the range of floats");

@@ -7,7 +7,7 @@
 
 // How far the scene's arrays were filled before a shape was read.
 struct motion_start {
-  uint32_t shape, position, normal;
+  uint32_t shape, position, normal, tangent;
 };
 struct motion_start motion_start(const struct scene *);
 

@@ -63,6 +63,7 @@ struct quadric {
   double radius, z_min, z_max; // sphere, cylinder
   double height, inner_radius; // disk
   double phi_max;              // radians
+  double mean_stretch;         // of area by world_from_object; 0: the same everywhere
 };
 
 // A shape that moves: its point p is at instance * object * p, and scene.position, normal or quadric
@@ -70,8 +71,8 @@ struct quadric {
 struct motion {
   uint32_t shape, n_shapes;           // a mesh may be two, which share its vertices
   struct animation instance, object;
-  uint32_t n_vertices, n_normals;     // meshes
-  float (*position)[3], (*normal)[3]; // before both transformations; NULL if there are none
+  uint32_t n_vertices, n_normals, n_tangents; // meshes
+  float (*position)[3], (*normal)[3], (*tangent)[3]; // before both transformations; or NULL
   struct box bounds;                  // at all times
 };
 

@@ -72,7 +72,7 @@ static struct vec white_point(void) {
 
 static bool emitted(const double value[SPECTRUM_COUNT], double rgb[3]) {
   struct vec xyz = tristimulus(value), white = white_point();
-  if (!(xyz.y > 0)) return false;
+  if (!(xyz.y > 0 && 1 / xyz.y < INFINITY)) return false; // that of a subnormal number overflows
   to_rgb(vec_scale(xyz, 1 / xyz.y), vec_scale(white, 1 / white.y), rgb);
   return true;
 }

@@ -6,6 +6,7 @@ unset MAKEFLAGS MAKELEVEL
 tree=$scratch/tree
 mkdir -p "$tree/tests/plants"
 cp tests/plants/run "$tree/tests/plants/run"
+check "the patch of pbrt-v4's coat applies" git apply --check tests/conformance/pbrt-coat.patch
 cd "$tree" || exit
 printf 'all build/value:\n\tmkdir -p build\n\tcat value >build/value\n.PHONY: build/value\n' >Makefile
 echo 3 >value

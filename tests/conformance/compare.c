@@ -26,6 +26,13 @@ struct estimate estimate_pooled(const double *mean, const double *se, int n, dou
   return out;
 }
 
+struct estimate estimate_with_excess(struct estimate a, double excess) {
+  double half = excess / 2 * fabs(a.mean);
+  a.mean -= half;
+  a.rounding += half;
+  return a;
+}
+
 static double welch_dof(struct estimate a, struct estimate b) {
   double se2 = a.se2 + b.se2;
   return se2 * se2 / (a.se2 * a.se2 / a.dof + b.se2 * b.se2 / b.dof);
@@ -76,6 +83,10 @@ struct region region_quadrant(const struct image *image, int number) {
   bool right = number % 2, bottom = number / 2;
   return (struct region){right ? x : 0, bottom ? y : 0, right ? image->width - x : x,
                          bottom ? image->height - y : y};
+}
+
+bool region_overlap(struct region a, struct region b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
 static double pixel_mean(const struct image *image, int x, int y) {

@@ -23,6 +23,9 @@ struct estimate estimate_pooled(const double *mean, const double *se, int n, dou
 // the rounding bounds counts. Without any variance: 0 or infinite.
 double compare_z(struct estimate a, struct estimate b);
 
+// The same estimate when the truth is known to be between (1 - excess) of it and all of it.
+struct estimate estimate_with_excess(struct estimate, double excess);
+
 // |z| that a family of so many independent tests exceeds somewhere with probability `level`
 // (Sidak).
 double compare_threshold(double level, long tests);
@@ -40,6 +43,8 @@ struct region {
 int region_count(const struct image *, int side);
 struct region region_block(const struct image *, int side, int number);
 struct region region_quadrant(const struct image *, int number); // 0..3: top left, right, bottom
+
+bool region_overlap(struct region, struct region);
 
 // The mean of the first three channels (of the only one, if there is one) over the region.
 double region_mean(const struct image *, struct region);

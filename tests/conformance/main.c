@@ -10,25 +10,36 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char no_media[] = "MakeNamedMedium is not in this version";
+static const char no_media[] = "participating media are not in this version";
+
+// pbrt-v4's LayeredBxDF::f weighs the second of its two ways through a rough coat with the density
+// of sampling wi from w instead of w from wi. For eta 1.5 and alpha 0.1^(1/2) that is 5.5 % too
+// much for light along the normal, 7 % at 36 degrees, 12.5 % at 72 degrees; in c06 it is seen on
+// the sphere at the left. (Its Sample_f is right, so no BSDF renders as pbrt-v4 does.) A copy with
+// its value agrees in all blocks: tests/conformance/pbrt-coat.
+static const struct doubt coat = {{11, 40, 16, 18}, 0.111};
 
 const struct conformance_scene conformance_scenes[] = {
-    {"c01-cornell-diffuse", "closed box, area light, two rotated blocks", NULL},
-    {"c02-shapes-point-spot", "sphere, disk, cylinder; point and spot lights", NULL},
-    {"c03-distant-infinite", "distant light and constant environment", NULL},
-    {"c04-glass-mirror", "smooth glass and smooth conductor", NULL},
-    {"c05-rough", "rough conductors (anisotropic too) and rough glass", NULL},
-    {"c06-coated-transmitting", "coated diffuse, diffuse transmission, thin dielectric, mix", NULL},
-    {"c07-textures", "checkerboard, image texture, texture scale", NULL},
-    {"c08-lens", "thin lens", NULL},
-    {"c09-motion", "motion blur", NULL},
-    {"c10-fog", "fog around everything", no_media},
-    {"c11-media-in-shapes", "media inside shapes, interface, medium inside glass", no_media},
-    {"c12-instances", "Include, instances, transforms, bilinear patch", NULL},
-    {"c13-environment", "image environment", NULL},
-    {"c14-light-units", "scale, power, twosided, blackbody", NULL},
-    {"c15-ortho", "orthographic, screen window, non-square", NULL},
-    {NULL, NULL, NULL},
+    {.name = "c01-cornell-diffuse", .about = "closed box, area light, two rotated blocks"},
+    {.name = "c02-shapes-point-spot", .about = "sphere, disk, cylinder; point and spot lights"},
+    {.name = "c03-distant-infinite", .about = "distant light and constant environment"},
+    {.name = "c04-glass-mirror", .about = "smooth glass and smooth conductor"},
+    {.name = "c05-rough", .about = "rough conductors (anisotropic too) and rough glass"},
+    {.name = "c06-coated-transmitting",
+     .about = "coated diffuse, diffuse transmission, thin dielectric, mix",
+     .doubt = &coat},
+    {.name = "c07-textures", .about = "checkerboard, image texture, texture scale"},
+    {.name = "c08-lens", .about = "thin lens"},
+    {.name = "c09-motion", .about = "motion blur"},
+    {.name = "c10-fog", .about = "fog around everything", .refusal = no_media},
+    {.name = "c11-media-in-shapes",
+     .about = "media inside shapes, interface, medium inside glass",
+     .refusal = no_media},
+    {.name = "c12-instances", .about = "Include, instances, transforms, bilinear patch"},
+    {.name = "c13-environment", .about = "image environment"},
+    {.name = "c14-light-units", .about = "scale, power, twosided, blackbody"},
+    {.name = "c15-ortho", .about = "orthographic, screen window, non-square"},
+    {0},
 };
 
 bool selected(const struct options *options, const char *name) {

@@ -5,9 +5,17 @@
 #include "tests/conformance/report.h"
 #include "tests/conformance/subject.h"
 
+// Where the reference itself is known to be too bright: the truth is between (1 - excess) of it and
+// all of it.
+struct doubt {
+  struct region where;
+  double excess;
+};
+
 struct conformance_scene {
   const char *name, *about;
   const char *refusal; // what the reader says while the scene is beyond this version, else NULL
+  const struct doubt *doubt; // of the blocks it touches, or NULL
 };
 extern const struct conformance_scene conformance_scenes[]; // ends with a NULL name
 

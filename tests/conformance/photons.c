@@ -1,9 +1,9 @@
 // Photons extrapolated to radius zero against path tracing, on the same depth and pixel footprint:
 // the mean of the image and of its quadrants, each |z| < 4.
 // All these scenes are a room of two units seen at 64 pixels from 3.4 in front of its middle, where
-// a pixel is 2 * 3.4 * tan(19 degrees) / 64 = 0.037 wide; the largest radius is two of these. The
-// smallest sphere's radius is 0.14; the largest and the two smaller ones leave m3 r^3 / 8 of a
-// bias's cubic term.
+// a pixel is 2 * 3.4 * tan(19 degrees) / 64 = 0.037 wide; the largest radius is two of these, half
+// of the smallest sphere's. Of a cubic term m3 r^3 of the bias, m3 r^3 / 8 remains,
+// and what is finer than the smallest radius is not resolved: lamps hang 0.01 under the ceiling.
 #include "tests/conformance/parts.h"
 
 #include <math.h>

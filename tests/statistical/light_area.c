@@ -51,6 +51,11 @@ static void test_ball_flux(void **state) {
   "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\nShape \"bilinearmesh\" \"integer indices\" "     \
   "[0 1 3 4 1 2 4 5] \"point3 P\" [0 0 0 0.5 0 0 3 0 0 0 2 0 2.2 2 0 3 2 0]\n"
 
+#define EGG                                                                                        \
+  "AttributeBegin\nAreaLightSource \"diffuse\" \"float power\" 2\nTranslate 0 0 1.3\nRotate 70 1 " \
+  "0 "                                                                                             \
+  "0\nScale 0.5 0.3 0.8\nShape \"sphere\"\nAttributeEnd\n" LIGHT_PLANE
+
 #define TUBE                                                                                       \
   "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\nTranslate 0 0 1.3\nRotate 70 1 " \
   "0 0\nScale 0.5 0.5 2\nShape \"cylinder\" \"float phimax\" 300\nAttributeEnd\n" LIGHT_PLANE
@@ -201,7 +206,8 @@ static void test_pdf_consistent(void **state) {
                                TRAPEZOIDS,
                                arena_format(&arena, BALL, "false"),
                                DISC,
-                               TUBE};
+                               TUBE,
+                               EGG};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     struct scene scene = light_scene(texts[i], &arena);
     const struct light *light = &scene.light[0];

@@ -36,6 +36,20 @@ static void a_bound_on_rounding_is_taken_off_first(void **state) {
   assert_true(compare_z(a, b) == 0);
 }
 
+// Of a reference that may be a tenth too bright, everything from 0.9 to 1 of it agrees.
+static void known_excess_widens_to_one_side(void **state) {
+  (void)state;
+  struct estimate b = {.mean = 2, .se2 = 0.01, .dof = 1e9};
+  struct estimate low = {.mean = 1.8001, .se2 = 0.01, .dof = 1e9}, high = low;
+  high.mean = 1.9999;
+  assert_true(compare_z(low, estimate_with_excess(b, 0.1)) == 0);
+  assert_true(compare_z(high, estimate_with_excess(b, 0.1)) == 0);
+  low.mean = 1.75;
+  high.mean = 2.05;
+  assert_near(compare_z(low, estimate_with_excess(b, 0.1)), -0.05 / sqrt(0.02), 1e-6);
+  assert_near(compare_z(high, estimate_with_excess(b, 0.1)), 0.05 / sqrt(0.02), 1e-6);
+}
+
 static void black_has_no_error_and_must_be_black(void **state) {
   (void)state;
   struct estimate black = {.dof = 15}, light = {.mean = 1e-9, .dof = 15};
@@ -153,6 +167,12 @@ static void regions_cover_every_pixel_once(void **state) {
   }
   assert_near(blocks / (21 * 13), all, 1e-9);
   assert_near(quadrants / (21 * 13), all, 1e-9);
+  for (int b = 0; b < 6; b++) { // they share nothing, and all touch a rectangle at their corners
+    for (int other = 0; other < 6; other++)
+      assert_int_equal(region_overlap(region_block(&image, 8, b), region_block(&image, 8, other)),
+                       b == other);
+    assert_true(region_overlap((struct region){7, 7, 10, 2}, region_block(&image, 8, b)));
+  }
   struct region last = region_block(&image, 8, 5), right = region_quadrant(&image, 1);
   assert_true(last.x == 16 && last.y == 8 && last.width == 5 && last.height == 5);
   assert_true(right.x == 10 && right.y == 0 && right.width == 11 && right.height == 6);
@@ -183,6 +203,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_difference_is_students_t_as_a_normal_deviate),
       cmocka_unit_test(a_bound_on_rounding_is_taken_off_first),
+      cmocka_unit_test(known_excess_widens_to_one_side),
       cmocka_unit_test(black_has_no_error_and_must_be_black),
       cmocka_unit_test(the_threshold_is_sidaks),
       cmocka_unit_test(power_is_the_chance_to_exceed_the_threshold),

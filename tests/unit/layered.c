@@ -288,6 +288,25 @@ static void smooth_coats_on_smooth_metals_are_a_series(void **state) {
   assert_true(sample.pdf == 0 && sample.wi.x == -wo.x && sample.wi.y == -wo.y);
 }
 
+// Any maxdepth is as good as infinite, and ends.
+static void endless_walks_end(void **state) {
+  (void)state;
+  static const char *const materials[] = {"coateddiffuse", "coatedconductor"};
+  for (int i = 0; i < 4; i++) {
+    char text[200];
+    snprintf(text, sizeof text,
+             "Material \"%s\" \"rgb reflectance\" [1 1 1] \"float "
+             "thickness\" %d \"rgb albedo\" [%d %d "
+             "%d] \"integer maxdepth\" 2147483647",
+             materials[i % 2], i / 2, i / 2, i / 2, i / 2);
+    struct bsdf bsdf = bsdf_of(text, 0.5);
+    struct bsdf_sample sample;
+    for (int k = 0; k < 100; k++)
+      if (bsdf.type->sample(&bsdf, wo, (double[]){0.3, 0.01 * k, 0.7}, TRANSPORT_RADIANCE, &sample))
+        assert_true(isfinite(sample.weight[0]));
+  }
+}
+
 // ---- sampling and reading ----
 
 // The weight is f |cos| / pdf, on either side, and the density is the one that is said.
@@ -405,6 +424,7 @@ int main(void) {
       cmocka_unit_test(the_series_ends_with_the_walk),
       cmocka_unit_test(the_walk_agrees_with_the_closed_form),
       cmocka_unit_test(smooth_coats_on_smooth_metals_are_a_series),
+      cmocka_unit_test(endless_walks_end),
       cmocka_unit_test(weights_are_values_over_densities),
       cmocka_unit_test(a_mix_takes_the_second_by_amount),
       cmocka_unit_test(problems_name_what_is_wrong),

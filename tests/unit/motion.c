@@ -3,6 +3,7 @@
 #include "scene/motion.h"
 #include "bvh/view.h"
 #include "integrator/integrator.h"
+#include "run/render.h"
 #include "scene_text.h"
 
 #include <float.h>
@@ -112,7 +113,7 @@ static void tiny_and_huge_scales_are_decomposed(void **state) {
   "\"point3 P\" [-1 0 -1 1 0 -1 1 0 1 -1 0 1]\n"
 #define BENT                                                                                       \
   "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1 1 0 -1 1 0 1] "                                    \
-  "\"normal N\" [0 1 0 .6 .8 0 0 .6 .8]\n"                                                         \
+  "\"normal N\" [0 1 0 .6 .8 0 0 .6 .8] \"vector3 S\" [1 0 0 0 .5 0 .6 0 .8]\n"                    \
   "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]\n"
 #define TIMES "TransformTimes .5 2.5 "
 #define LIGHT "LightSource \"point\"\n"
@@ -134,6 +135,11 @@ static void check_at_a_quarter(const char *moving, const char *still) {
   for (uint32_t k = 0; k < copy->n_normals; k++)
     for (int axis = 0; axis < 3; axis++)
       assert_true(fabs((double)copy->normal[k][axis] - (double)other.normal[k][axis]) <=
+                  4 * FLT_EPSILON);
+  assert_int_equal(other.n_tangents, copy->n_tangents);
+  for (uint32_t k = 0; k < copy->n_tangents; k++)
+    for (int axis = 0; axis < 3; axis++)
+      assert_true(fabs((double)copy->tangent[k][axis] - (double)other.tangent[k][axis]) <=
                   4 * FLT_EPSILON);
   for (uint32_t p = 0; p < copy->n_primitives; p++) { // the same side faces outward
     const struct shape *shape = &copy->shape[copy->shape_of[p]];
@@ -330,6 +336,35 @@ static void iterations_do_not_depend_on_each_other(void **state) {
   arena_release(arena);
 }
 
+static void pictures_do_not_depend_on_the_number_of_threads(void **state) {
+  (void)state;
+  enum { SIDE = 8, N = SIDE * SIDE };
+  struct scene scene = scene_of(
+      "ActiveTransform EndTime Rotate 20 0 1 0 ActiveTransform All Camera \"perspective\" "
+      "\"float lensradius\" .1 Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 "
+      "WorldBegin " LIGHT OBJECT MOVE("Translate -2 0 2", "Translate -1 0 4", INSTANCE));
+  struct arena arena = arena_reserve(), own = arena;
+  struct measurement measure = measure_pixel(&scene, __func__, &own);
+  struct pixel pixel[N];
+  for (int j = 0; j < N; j++) pixel[j] = (struct pixel){j % SIDE, j / SIDE};
+  measure.pixel = pixel, measure.n_points = N, measure.footprint = true;
+  static const char *const names[] = {"path", "probabilistic"};
+  for (int k = 0; k < 2; k++) {
+    struct image image[2];
+    for (int threads = 1; threads <= 2; threads++) {
+      struct run_options options = {.threads = threads, .quiet = true};
+      assert_true(render_image(integrator_find(names[k]), &measure, 20, options, &own,
+                               &image[threads - 1]));
+    }
+    float most = 0;
+    for (int j = 0; j < N; j++) most = image[0].plane[0][j] > most ? image[0].plane[0][j] : most;
+    assert_true(most > 0); // something is seen
+    for (int plane = 0; plane < 6; plane++)
+      assert_memory_equal(image[0].plane[plane], image[1].plane[plane], N * sizeof(float));
+  }
+  arena_release(arena);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rotations_go_by_the_shorter_arc),
@@ -346,6 +381,7 @@ int main(void) {
       cmocka_unit_test(a_disc_that_passes_covers_its_share_of_the_time),
       cmocka_unit_test(eye_and_photon_paths_share_their_time),
       cmocka_unit_test(iterations_do_not_depend_on_each_other),
+      cmocka_unit_test(pictures_do_not_depend_on_the_number_of_threads),
   };
   return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
 }

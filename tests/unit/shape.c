@@ -82,7 +82,7 @@ static struct inverse patch_inverse(const struct scene *scene, struct vec p) {
   return best;
 }
 
-// One primitive each; `area` in closed form; even: may emit (area and sample are defined).
+// One primitive each; `area` in closed form (0: there is none); even: samples are uniform.
 static const struct {
   const char *name, *text;
   struct inverse (*inverse)(const struct scene *, struct vec p);

@@ -4,6 +4,7 @@
 #define SCENE_MATERIAL_COATED_H
 
 #include "scene/layered.h"
+#include "scene/material/albedo.h"
 #include "scene/material/dielectric_input.h"
 #include "scene/material/roughness.h"
 
@@ -41,24 +42,15 @@ static inline bool coated_is_black(const struct input *input) {
   return !input->texture && input->value[0] == 0 && input->value[1] == 0 && input->value[2] == 0;
 }
 
-static inline double coated_clamp(double x, double lo, double hi) {
-  return x > lo ? (x < hi ? x : hi) : lo; // a texture's NaN: lo
-}
-
-// Textures are clamped where pbrt-v4 clamps them; g also to 0.99, as in its phase function.
-static inline void coated_reflectance(const struct input *input, const struct surface *surface,
-                                      double rgb[3]) {
-  input_rgb(input, surface, rgb);
-  for (int c = 0; c < 3; c++) rgb[c] = coated_clamp(rgb[c], 0, 1);
-}
-
+// Textures are kept within what pbrt-v4 allows, and all g within the 0.99 of its phase function.
 static inline void coated_at(const struct coated *coated, const struct surface *surface,
                              struct layered *layered) {
   layered->coat = dielectric_of(coated->eta, roughness_at(&coated->roughness, surface));
   double thickness = input_float(&coated->thickness, surface);
   layered->thickness = thickness > 0 ? thickness : 0;
-  coated_reflectance(&coated->albedo, surface, layered->albedo);
-  layered->g = coated_clamp(input_float(&coated->g, surface), -0.99, 0.99);
+  albedo_at(&coated->albedo, surface, 1, layered->albedo);
+  double g = input_float(&coated->g, surface);
+  layered->g = g > -0.99 ? (g < 0.99 ? g : 0.99) : -0.99;
   layered->max_depth = coated->max_depth;
   layered->n_samples = coated->n_samples;
 }

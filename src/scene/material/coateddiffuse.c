@@ -142,7 +142,7 @@ static void bsdf(const struct scene *scene, const struct material *material,
   const struct coated_diffuse *diffuse = material->data;
   struct layered layered = {0};
   coated_at(&diffuse->coated, surface, &layered);
-  coated_reflectance(&diffuse->reflectance, surface, layered.reflectance);
+  albedo_at(&diffuse->reflectance, surface, 1, layered.reflectance);
   out->type = diffuse->is_tabulated && !layered_has_medium(&layered) ? &closed : &walked;
   out->data = diffuse;
   coated_pack(&layered, out);

@@ -1,6 +1,7 @@
 // Shape "bilinearmesh": `point3 P`, `integer indices` (four for each patch: p00, p10, p01, p11; may
 // be absent for one patch), `normal N`, `point2 uv`. The geometric normal is dp/du x dp/dv, with
 // the rules of triangles for its side.
+#include "scene/shape/gauss.h"
 #include "scene/shape/mesh_params.h"
 #include "scene/shape/patch.h"
 
@@ -165,21 +166,15 @@ static void detail(const struct scene *scene, const struct shape *shape, struct 
 }
 
 // ---- area and samples ----
-// Gauss's rule of 8 points in u and v; exact for plane patches that do not fold.
+// Exact for plane patches that do not fold, but for rounding.
 static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
-  static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                 0.9602898564975363},
-                      weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                   0.1012285362903763};
   struct patch patch = gather(scene, shape, primitive);
   double sum = 0;
-  for (int i = 0; i < 8; i++)
-    for (int j = 0; j < 8; j++) {
-      double u = 0.5 + (i % 2 ? 0.5 : -0.5) * node[i / 2];
-      double v = 0.5 + (j % 2 ? 0.5 : -0.5) * node[j / 2];
-      sum += weight[i / 2] * weight[j / 2] * vec_length(cross(&patch, u, v));
-    }
-  return sum / 4;
+  for (int i = 0; i < GAUSS_POINTS; i++)
+    for (int j = 0; j < GAUSS_POINTS; j++)
+      sum += gauss_weight[i] * gauss_weight[j] *
+             vec_length(cross(&patch, gauss_node[i], gauss_node[j]));
+  return sum;
 }
 
 // What samples are drawn from: the area at the corners, bilinear between them.

@@ -3,17 +3,28 @@
 #include "scene/shape/cylinder.h"
 #include "scene/shape/quadric.h"
 
+// At the angle of p in object space.
+static double stretch_at(const struct quadric *q, struct vec p) {
+  return quadric_stretch(q, vec(p.x / q->radius, p.y / q->radius, 0));
+}
+
+static double stretch(const struct quadric *q, double u0, double u1) {
+  (void)u0;
+  double cosine, sine;
+  quadric_angle(q, u1, &cosine, &sine);
+  return quadric_stretch(q, vec(cosine, sine, 0));
+}
+
 static bool read(struct scene_builder *builder, struct params *params) {
   struct quadric q = {.radius = quadric_read_radius(params),
                       .phi_max = quadric_read_phi_max(params)};
   double a = params_float(params, "zmin", -1), b = params_float(params, "zmax", 1);
   q.z_min = a < b ? a : b, q.z_max = a < b ? b : a; // pbrt takes them in either order
   if (a == b) params_complain(params, "zmax", "zmin and zmax are equal");
-  if (builder->emits && !quadric_is_even(&builder->world_from_object, false))
-    params_complain(params, "radius",
-                    "a cylinder that emits cannot be stretched across its axis (its points would "
-                    "not be sampled uniformly); scale x and y equally");
-  return params_finish(params) && scene_add_quadric(builder, params, &q);
+  if (!params_finish(params)) return false;
+  if (!quadric_is_even(&builder->world_from_object, false))
+    q.mean_stretch = quadric_mean_stretch(builder, q, stretch);
+  return scene_add_quadric(builder, params, &q);
 }
 
 // Exact under any affine map: the image of the circle at half height, moved along the axis.
@@ -44,14 +55,14 @@ static void detail(const struct scene *scene, const struct shape *shape, struct 
   surface->uv[1] = (p.z - q->z_min) / (q->z_max - q->z_min);
 }
 
-// Only of cylinders that are not stretched across the axis: others never emit.
 static double area(const struct scene *scene, const struct shape *shape, uint32_t primitive) {
   (void)primitive;
   const struct quadric *q = quadric_of(scene, shape);
+  double object_area = q->radius * q->phi_max * (q->z_max - q->z_min);
+  if (q->mean_stretch > 0) return q->mean_stretch * object_area;
   struct vec x = transform_direction(&q->world_from_object, vec(1, 0, 0)),
              z = transform_direction(&q->world_from_object, vec(0, 0, 1));
-  assert(quadric_is_even(&q->world_from_object, false));
-  return vec_length(x) * vec_length(z) * q->radius * q->phi_max * (q->z_max - q->z_min);
+  return vec_length(x) * vec_length(z) * object_area;
 }
 
 static void sample(const struct scene *scene, const struct shape *shape, uint32_t primitive,
@@ -65,6 +76,15 @@ static void sample(const struct scene *scene, const struct shape *shape, uint32_
   *ng = quadric_normal(q, shape, vec(cosine, sine, 0));
 }
 
+// Uniform on the cylinder, then stretched with it.
+static double density(const struct scene *scene, const struct shape *shape, uint32_t primitive,
+                      struct vec p) {
+  (void)primitive;
+  const struct quadric *q = quadric_of(scene, shape);
+  if (!(q->mean_stretch > 0)) return 1;
+  return q->mean_stretch / stretch_at(q, transform_point(&q->object_from_world, p));
+}
+
 const struct shape_type shape_cylinder = {
     .name = "cylinder",
     .about = "a cylinder around the z axis, or the part of it up to phimax, without its ends",
@@ -76,4 +96,5 @@ const struct shape_type shape_cylinder = {
     .normal = normal,
     .area = area,
     .sample = sample,
+    .density = density,
 };

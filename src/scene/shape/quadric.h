@@ -6,8 +6,7 @@
 #include "numeric/elementary.h"
 #include "scene/box.h"
 #include "scene/read.h"
-
-#include <assert.h>
+#include "scene/shape/gauss.h"
 
 // Matrices in text files carry six digits or more, so that a written rotation is one to about 1e-6.
 // Within this tolerance the density of uniform samples is off by at most twice as much, relative.
@@ -67,6 +66,31 @@ static inline struct vec quadric_detail(const struct quadric *quadric, struct su
   struct vec dpdu = vec(-quadric->phi_max * p.y, quadric->phi_max * p.x, 0);
   surface->dpdu = transform_direction(&quadric->world_from_object, dpdu);
   return p;
+}
+
+// How much the area at a point grows on its way to world space, n its unit normal in object space:
+// |det M| |M^-T n|.
+static inline double quadric_stretch(const struct quadric *quadric, struct vec n) {
+  return fabs(transform_determinant(quadric->world_from_object)) *
+         vec_length(transform_normal(&quadric->object_from_world, n));
+}
+
+// Where quadric_is_even does not hold, the mean of `stretch` over the quadric, which it takes from
+// shares of its height and sweep: quarters of the one and eighths of the other.
+static inline double quadric_mean_stretch(const struct scene_builder *builder, struct quadric q,
+                                          double (*stretch)(const struct quadric *, double u0,
+                                                            double u1)) {
+  q.world_from_object = builder->world_from_object;
+  transform_invert(q.world_from_object, &q.object_from_world); // the reader checked it
+  double sum = 0;
+  for (int i = 0; i < 4 * GAUSS_POINTS; i++)
+    for (int j = 0; j < 8 * GAUSS_POINTS; j++) {
+      int a = i % GAUSS_POINTS, b = j % GAUSS_POINTS;
+      sum += gauss_weight[a] * gauss_weight[b] *
+             stretch(&q, (i / GAUSS_POINTS + gauss_node[a]) / 4,
+                     (j / GAUSS_POINTS + gauss_node[b]) / 8);
+    }
+  return sum / (4 * 8);
 }
 
 #endif
