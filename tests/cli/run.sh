@@ -157,8 +157,8 @@ refuses 'more photons than memory holds' 1 'photons: 1000000000000' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --photons 1e12
 refuses 'a scene without light' 1 'no light' \
   "$photonlab" render <(sed '/AreaLight/d' scenes/cornell-box.pbrt) -o "$out.exr"
-refuses 'an integrator of the scene that is not ours' 1 'pbrt: integrator: sppm is unknown' \
-  "$photonlab" render "$(sed 's/"probabilistic"/"sppm"/' scenes/cornell-box.pbrt > "$scratch/sppm.pbrt"; echo "$scratch/sppm.pbrt")" -o "$out.exr"
+refuses 'an integrator of the scene that is not ours' 1 'pbrt: integrator: photonmapper is unknown' \
+  "$photonlab" render "$(sed 's/"probabilistic"/"photonmapper"/' scenes/cornell-box.pbrt > "$scratch/mapper.pbrt"; echo "$scratch/mapper.pbrt")" -o "$out.exr"
 sed -i '5s/0\./1./' "$scratch/two/log.csv"
 refuses 'a log that was edited' 1 'changed after the run' "$photonlab" fit "$scratch/two"
 check_fails 'no refused run leaves anything' ls "$out" "$out.exr" "$out.gif"
