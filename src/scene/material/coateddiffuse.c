@@ -100,9 +100,10 @@ static void value_closed(const struct bsdf *bsdf, struct vec wo, struct vec wi,
   double through = coat_table_entering(&diffuse->table, coat, wo) *
                    coat_table_entering(&diffuse->table, coat, wi) / (coat->eta * coat->eta);
   double returned = coat_table_returned(&diffuse->table, coat);
+  int times = layered.max_depth / 2 + layered.max_depth % 2;
   for (int c = 0; c < 3; c++) {
     double r = layered.reflectance[c];
-    f[c] = top + r * one_over_pi * through * series(r * returned, (layered.max_depth + 1) / 2);
+    f[c] = top + r * one_over_pi * through * series(r * returned, times);
   }
 }
 
