@@ -407,7 +407,10 @@ static long header_count(const struct text *text, const char *element) {
 static void real_files_hold_what_their_headers_say(void **state) {
   (void)state;
   glob_t found;
-  if (glob("/work/shared/scenes/*/models/*.ply", 0, NULL, &found) != 0) {
+  char pattern[4096];
+  const char *scenes = getenv("SCENES"); // as make test gives it
+  snprintf(pattern, sizeof pattern, "%s/*/models/*.ply", scenes ? scenes : "../shared/scenes");
+  if (glob(pattern, 0, NULL, &found) != 0) {
     print_message("no PLY files of others here: skipped\n");
     skip();
   }
