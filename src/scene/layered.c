@@ -86,10 +86,11 @@ static double phase(double g, double cosine) {
   return one_over_4pi * (1 - g * g) / (denominator * sqrt(denominator));
 }
 
-// Density and value are the same.
+// Density and value are the same. With x = 1 - 2 u and y = -(g + x) / (1 + g x) the inversion
+// -(1 + g^2 - q^2) / (2 g), q = 1 + g y, needs no division by g: it holds for g = 0 too.
 static struct vec phase_sample(double g, struct vec wo, const double u[2]) {
-  double q = (1 - g * g) / (1 + g - 2 * g * u[0]);
-  double cosine = fabs(g) < 1e-3 ? 1 - 2 * u[0] : -(1 + g * g - q * q) / (2 * g);
+  double x = 1 - 2 * u[0], y = -(g + x) / (1 + g * x);
+  double cosine = y - g * (1 - y) * (1 + y) / 2;
   double square = (1 - cosine) * (1 + cosine), r = square > 0 ? sqrt(square) : 0, sin_phi, cos_phi;
   struct vec s, t;
   vec_basis(wo, &s, &t);

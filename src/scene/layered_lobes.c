@@ -68,7 +68,7 @@ static struct microfacet conductor_lobe(const struct layered *l) {
   double cx = coat->alpha_x, cy = coat->alpha_y;
   struct microfacet m =
       microfacet_of(sqrt(bx * bx + bend * cx * cx), sqrt(by * by + bend * cy * cy));
-  return m.smooth ? microfacet_of(1e-3, 1e-3) : m;
+  return m.smooth ? microfacet_of(1e-3, 1e-3) : m; // the narrowest that is no delta
 }
 
 static double facets_pdf(const struct microfacet *facets, struct vec wo, struct vec wi) {
