@@ -37,6 +37,10 @@ const struct experiment_key experiment_keys[] = {
      key_read_quantity},
     {"images", "(none)", "N at which the running average is kept as a moment image", false,
      key_read_images},
+    {"single-images", "(none)", "i whose iteration alone is kept as a moment image", false,
+     key_read_single_images},
+    {"discs", "(none)", "i after which run 1's points and their own radii are kept (ppm, sppm)",
+     false, key_read_discs},
     {"reference", "analytic", "bias against: analytic, none or {integrator: path, se: 0.001}",
      false, key_read_reference},
     {"parts", "(one)", "list of mappings, each an experiment that inherits the keys above it",
@@ -169,17 +173,27 @@ const char *cell_settle(struct cell *cell) {
   return cell->integrator->photons ? settle_radius(cell) : NULL;
 }
 
+// An ascending list of iterations.
+static bool check_list(struct reader *reader, const struct level *level, const char *key,
+                       const uint64_t *list, int n, const struct cell *cell) {
+  return n == 0 || list[n - 1] <= cell->iterations ||
+         problem_at(reader->reading.problem, level->value[key_number(key)]->place,
+                    "%s: %llu is beyond the %llu iterations", key, (unsigned long long)list[n - 1],
+                    (unsigned long long)cell->iterations);
+}
+
 static bool check_cell(struct reader *reader, const struct level *level, struct cell *cell) {
   struct problem *problem = reader->reading.problem;
   if (!cell->scene_path) return problem_at(problem, level->place, "scene is missing");
   const char *wrong = cell_settle(cell);
   if (wrong) return problem_at(problem, level->place, "%s", wrong);
-  if (cell->n_images && cell->image[cell->n_images - 1] > cell->iterations)
-    return problem_at(problem, level->value[key_number("images")]->place,
-                      "images: %llu is beyond the %llu iterations",
-                      (unsigned long long)cell->image[cell->n_images - 1],
-                      (unsigned long long)cell->iterations);
-  return true;
+  if (cell->n_discs && !cell->integrator->local)
+    return problem_at(problem, level->value[key_number("discs")]->place,
+                      "discs: the points of integrator %s have no radii of their own",
+                      cell->integrator->name);
+  return check_list(reader, level, "images", cell->image, cell->n_images, cell) &&
+         check_list(reader, level, "single-images", cell->single, cell->n_singles, cell) &&
+         check_list(reader, level, "discs", cell->discs, cell->n_discs, cell);
 }
 
 // Outputs name a scene by its base name, so it must not name two.

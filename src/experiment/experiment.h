@@ -44,6 +44,10 @@ struct cell {
   unsigned quantities;     // what is fitted: bits of enum quantity
   uint64_t *image;         // running averages after these iterations are kept as moment images
   int n_images;
+  uint64_t *single;        // the images of these iterations alone are kept
+  int n_singles;
+  uint64_t *discs;         // the points of run 1 and their radii after these passes are kept
+  int n_discs;
   const char *reference_integrator; // "path", "analytic" or "none"
   double reference_se;     // absolute target standard error of the reference, radiance; 0: none needed
 };

@@ -11,13 +11,18 @@ static bool same_probes(const struct cell *a, const struct cell *b) {
   return true;
 }
 
-static bool same_images(const struct cell *a, const struct cell *b) {
-  return a->n_images == b->n_images &&
-         (a->n_images == 0 ||
-          memcmp(a->image, b->image, (size_t)a->n_images * sizeof *a->image) == 0);
+static bool same_list(const uint64_t *a, int n_a, const uint64_t *b, int n_b) {
+  return n_a == n_b && (n_a == 0 || memcmp(a, b, (size_t)n_a * sizeof *a) == 0);
 }
 
-// Everything but kernel, law, alpha, radius, its reference and k, and what the analysis alone looks at.
+static bool same_images(const struct cell *a, const struct cell *b) {
+  return same_list(a->image, a->n_images, b->image, b->n_images) &&
+         same_list(a->single, a->n_singles, b->single, b->n_singles) &&
+         same_list(a->discs, a->n_discs, b->discs, b->n_discs);
+}
+
+// Everything but kernel, law, alpha, radius, its reference and k, and what the analysis alone looks
+// at.
 static bool same_paths(const struct cell *a, const struct cell *b) {
   return a->photons == b->photons && a->depth == b->depth && a->direct == b->direct &&
          a->left_out == b->left_out && a->seed == b->seed && a->runs == b->runs &&

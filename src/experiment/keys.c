@@ -183,16 +183,29 @@ bool key_read_quantity(struct reading *reading, const struct node *node, struct 
   return true;
 }
 
-bool key_read_images(struct reading *reading, const struct node *node, struct cell *cell) {
-  cell->n_images = list_count(node);
-  cell->image = arena_new(reading->arena, uint64_t, cell->n_images);
-  for (int j = 0; j < cell->n_images; j++) {
+static bool read_ascending(struct reading *reading, const struct node *node, uint64_t **list,
+                           int *n) {
+  uint64_t *value = arena_new(reading->arena, uint64_t, list_count(node));
+  for (int j = 0; j < list_count(node); j++) {
     const struct node *item = list_item(node, j);
-    if (!value_count(reading, item, 1, most_counted, &cell->image[j])) return false;
-    if (j > 0 && cell->image[j] <= cell->image[j - 1])
-      return value_complain(reading, item, "does not ascend");
+    if (!value_count(reading, item, 1, most_counted, &value[j])) return false;
+    if (j > 0 && value[j] <= value[j - 1]) return value_complain(reading, item, "does not ascend");
   }
+  *list = value;
+  *n = list_count(node);
   return true;
+}
+
+bool key_read_images(struct reading *reading, const struct node *node, struct cell *cell) {
+  return read_ascending(reading, node, &cell->image, &cell->n_images);
+}
+
+bool key_read_single_images(struct reading *reading, const struct node *node, struct cell *cell) {
+  return read_ascending(reading, node, &cell->single, &cell->n_singles);
+}
+
+bool key_read_discs(struct reading *reading, const struct node *node, struct cell *cell) {
+  return read_ascending(reading, node, &cell->discs, &cell->n_discs);
 }
 
 static bool read_pixel(struct reading *reading, const struct node *node, struct pixel *pixel) {

@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct local; // estimate/local.h
+
 struct integrator_type {
   const char *name, *about, *source;
   bool photons;     // uses kernel, law, radius and photons
@@ -29,6 +31,9 @@ struct integrator_type {
   void (*step)(void *state, uint64_t i, double *frame);
   // Of the photons of the last step and what finds them; NULL: none are stored.
   int64_t (*bytes)(const void *state);
+  // The points' own radii, of the next step; NULL: it keeps none. Of several points a pixel the
+  // first set comes first, in the order of the measured pixels.
+  const struct local *(*local)(const void *state);
 };
 
 extern const struct integrator_type *const integrator_types[]; // NULL-terminated

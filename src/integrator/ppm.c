@@ -65,6 +65,10 @@ static int64_t ppm_bytes(const void *data) {
   return local_bytes(((const struct ppm *)data)->local);
 }
 
+static const struct local *ppm_local(const void *data) {
+  return ((const struct ppm *)data)->local;
+}
+
 const struct integrator_type integrator_ppm = {
     .name = "ppm",
     .about = "hit points of one eye pass, then photon passes that shrink each point's own radius",
@@ -77,4 +81,5 @@ const struct integrator_type integrator_ppm = {
     .begin = ppm_begin,
     .step = ppm_step,
     .bytes = ppm_bytes,
+    .local = ppm_local,
 };

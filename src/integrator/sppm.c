@@ -16,6 +16,8 @@ static void sppm_step(void *state, uint64_t i, double *frame) {
 
 static int64_t sppm_bytes(const void *state) { return local_bytes(state); }
 
+static const struct local *sppm_local(const void *state) { return state; }
+
 const struct integrator_type integrator_sppm = {
     .name = "sppm",
     .about = "a new eye pass each iteration, radius and count shared by the pixel",
@@ -27,4 +29,5 @@ const struct integrator_type integrator_sppm = {
     .begin = sppm_begin,
     .step = sppm_step,
     .bytes = sppm_bytes,
+    .local = sppm_local,
 };

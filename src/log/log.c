@@ -10,11 +10,14 @@ const struct log_column log_columns[] = {
     {"kernel", "name", "of the density estimate"},
     {"law", "name", "radius sequence"},
     {"alpha", "1", "fraction kept"},
-    {"series", "name", "iteration: of iteration i alone; average: running average of 1..i"},
+    {"series", "name",
+     "iteration: of iteration i alone; average: running average of 1..i; squared-radius: of the "
+     "probe itself in iteration i (local statistics)"},
     {"i", "1", "iteration, from 1"},
     {"radius", "reference radius", "kernel support of iteration i; scene unit where it is global"},
     {"n", "1", "runs"},
-    {"mean", "W sr^-1 m^-2", "mean over runs of the luminance of radiance"},
+    {"mean", "W sr^-1 m^-2",
+     "mean over runs of the luminance of radiance (squared-radius: scene unit^2)"},
     {"m2", "(W sr^-1 m^-2)^2", "sum over runs of (x - mean)^2"},
     {"m3", "(W sr^-1 m^-2)^3", "sum over runs of (x - mean)^3"},
     {"m4", "(W sr^-1 m^-2)^4", "sum over runs of (x - mean)^4"},
@@ -39,6 +42,8 @@ void log_write_series(FILE *out, const struct cell *cell, const struct series *s
     write_row(out, cell, series->probe, "iteration", i, series->iteration[i - 1]);
   for (int k = 0; k < series->n_checkpoints; k++)
     write_row(out, cell, series->probe, "average", series->checkpoint[k], series->average[k]);
+  for (uint64_t i = 1; series->radius2 && i <= series->n_iterations; i++)
+    write_row(out, cell, series->probe, "squared-radius", i, series->radius2[i - 1]);
 }
 
 const char probes_header[] = "cell,probe,x,y,hit,px,py,pz,nx,ny,nz,scale_r,scale_g,scale_b,"

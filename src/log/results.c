@@ -151,22 +151,34 @@ static void series_reserve(struct results *results, struct arena *arena) {
       series->iteration = arena_new(arena, struct moments, (ptrdiff_t)n);
       series->checkpoint = arena_new(arena, uint64_t, (ptrdiff_t)n);
       series->average = arena_new(arena, struct moments, (ptrdiff_t)n);
+      if (results->experiment.cell[c].integrator->local)
+        series->radius2 = arena_new(arena, struct moments, (ptrdiff_t)n);
     }
 }
 
-static bool keep_moments(struct csv *csv, struct series *series, bool average, uint64_t i,
-                         struct moments m) {
-  if (!average) {
-    if (series->iteration[i - 1].n > 0) return csv_bad(csv, "an iteration stands twice");
-    series->iteration[i - 1] = m;
-    return true;
-  }
+// Into the list of moments by iteration.
+static bool keep_iteration(struct csv *csv, struct moments *list, uint64_t i, struct moments m) {
+  if (list[i - 1].n > 0) return csv_bad(csv, "an iteration stands twice");
+  list[i - 1] = m;
+  return true;
+}
+
+static bool keep_average(struct csv *csv, struct series *series, uint64_t i, struct moments m) {
   int n = series->n_checkpoints;
   if (n > 0 && i <= series->checkpoint[n - 1]) return csv_bad(csv, "averages do not ascend");
   series->checkpoint[n] = i;
   series->average[n] = m;
   series->n_checkpoints++;
   return true;
+}
+
+static bool keep_moments(struct csv *csv, struct series *series, const char *name, uint64_t i,
+                         struct moments m) {
+  if (strcmp(name, "iteration") == 0) return keep_iteration(csv, series->iteration, i, m);
+  if (strcmp(name, "average") == 0) return keep_average(csv, series, i, m);
+  if (series->radius2 && strcmp(name, "squared-radius") == 0)
+    return keep_iteration(csv, series->radius2, i, m);
+  return csv_bad(csv, "a row of an unknown series");
 }
 
 static bool read_log_row(struct csv *csv, struct results *results) {
@@ -179,21 +191,18 @@ static bool read_log_row(struct csv *csv, struct results *results) {
   if (!csv_whole(csv, field[LOG_PROBE], 0, (uint64_t)results->n_probes[cell] - 1, &probe))
     return false;
   struct series *series = &results->series[series_before(results, (int)cell) + (int)probe];
-  bool average = strcmp(field[LOG_SERIES], "average") == 0;
-  if (!average && strcmp(field[LOG_SERIES], "iteration") != 0)
-    return csv_bad(csv, "a row of an unknown series");
   struct moments m;
   if (!csv_whole(csv, field[LOG_I], 1, series->n_iterations, &i) ||
       !csv_numbers(csv, field + LOG_N, 5, (double *[]){&m.n, &m.mean, &m.m2, &m.m3, &m.m4}))
     return false;
   if (m.n != (double)results->experiment.cell[cell].runs)
     return csv_bad(csv, "a row of another number of runs");
-  return keep_moments(csv, series, average, i, m);
+  return keep_moments(csv, series, field[LOG_SERIES], i, m);
 }
 
 static bool series_is_complete(const struct series *series) {
   for (uint64_t i = 0; i < series->n_iterations; i++)
-    if (series->iteration[i].n == 0) return false;
+    if (series->iteration[i].n == 0 || (series->radius2 && series->radius2[i].n == 0)) return false;
   int n = series->n_checkpoints;
   return n > 0 && series->checkpoint[n - 1] == series->n_iterations;
 }

@@ -29,6 +29,7 @@ struct series {
   int n_checkpoints;
   uint64_t *checkpoint;    // N
   struct moments *average; // of the running average after N iterations
+  struct moments *radius2; // [n_iterations], scene units^2: of a local law's radius; NULL: none
 };
 
 struct results {

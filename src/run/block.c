@@ -1,12 +1,14 @@
-#define _GNU_SOURCE // opendir, rmdir
+#define _GNU_SOURCE // opendir, rmdir, clock_gettime
 #include "run/block.h"
 
 #include "base/file.h"
+#include "estimate/local.h"
 
 #include <dirent.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -16,15 +18,32 @@ struct averages {
   long film_size;
 };
 
-static void keep_images(const struct group_plan *plan, uint64_t i, const double *film, long size,
-                        double *value) {
-  for (int m = 0; m < plan->cell->n_images; m++) {
-    if (plan->cell->image[m] != i) continue;
-    long image = size / plan->measure.n_estimators;
-    for (int e = 0; e < plan->measure.n_estimators; e++)
-      for (long k = 0; k < image; k++)
-        value[plan_image(plan, e, m) + k] = film[e * image + k] / (double)i;
-  }
+// Image m of all estimators: `film` divided by n.
+static void keep_image(const struct group_plan *plan, int m, const double *film, double n,
+                       double *value) {
+  long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
+  for (int e = 0; e < plan->measure.n_estimators; e++)
+    for (long k = 0; k < size; k++) value[plan_image(plan, e, m) + k] = film[e * size + k] / n;
+}
+
+static void keep_images(const struct group_plan *plan, uint64_t i, const double *frame,
+                        const double *film, double *value) {
+  const struct cell *cell = plan->cell;
+  for (int m = 0; m < cell->n_images; m++)
+    if (cell->image[m] == i) keep_image(plan, m, film, (double)i, value);
+  for (int m = 0; m < cell->n_singles; m++)
+    if (cell->single[m] == i) keep_image(plan, cell->n_images + m, frame, 1, value);
+}
+
+// The probes' squared radii of iteration i, before it.
+static void keep_radii(const struct group_plan *plan, uint64_t i, const void *state,
+                       double *value) {
+  int n = plan->measure.n_estimators;
+  const double *r2 = plan->cell->integrator->local(state)->r2;
+  for (int e = 0; e < n; e++)
+    for (int p = 0; p < plan->n_probes; p++)
+      value[plan_series(plan, e, p) + (long)plan->cell->iterations + plan->n_checkpoints +
+            (long)(i - 1)] = r2[(long)plan->probe_point[p] * n + e];
 }
 
 // Iteration i's frame into the run's vector.
@@ -42,29 +61,46 @@ static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, cons
       if (checkpoint >= 0)
         series[plan->cell->iterations + (uint64_t)checkpoint] = *total / (double)i;
     }
-  if (!plan->images) return;
+  if (!plan->n_images) return;
   for (long k = 0; k < sum->film_size; k++) sum->film[k] += frame[k];
-  keep_images(plan, i, sum->film, sum->film_size, value);
+  keep_images(plan, i, frame, sum->film, value);
 }
 
-// Returns the most bytes of photons that an iteration held.
-static int64_t run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
-                        struct averages *sum, double *value) {
+static struct block_time clock_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return (struct block_time){progress_clock_s(), (double)now.tv_sec + 1e-9 * (double)now.tv_nsec,
+                             0};
+}
+
+// Adds what passed since `begin`; bytes are the most of any.
+static void take_time(struct block_time *time, struct block_time begin, int64_t bytes) {
+  struct block_time now = clock_now();
+  time->wall_s += now.wall_s - begin.wall_s;
+  time->cpu_s += now.cpu_s - begin.cpu_s;
+  time->photon_bytes = time->photon_bytes < bytes ? bytes : time->photon_bytes;
+}
+
+// Adds to time[n_times].
+static void run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
+                     struct averages *sum, double *value, struct block_time begin,
+                     struct block_time *time) {
   const struct integrator_type *integrator = plan->cell->integrator;
   memset(sum->probe, 0, (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
   memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
   integrator->begin(state, run);
-  int next = 0;
+  int next = 0, t = 0;
   int64_t most = 0;
   for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
+    if (plan->local) keep_radii(plan, i, state, value);
     integrator->step(state, i, frame);
     int64_t bytes = integrator->bytes ? integrator->bytes(state) : 0;
     most = most < bytes ? bytes : most;
     bool due = plan->checkpoint[next] == i;
     keep(plan, i, due ? next : -1, frame, sum, value);
     next += due;
+    if (plan_time_at(plan, t) == i) take_time(&time[t++], begin, most);
   }
-  return most;
 }
 
 int block_runs(const struct group_plan *plan, uint64_t block) {
@@ -72,29 +108,28 @@ int block_runs(const struct group_plan *plan, uint64_t block) {
   return left < RUNS_PER_BLOCK ? (int)left : RUNS_PER_BLOCK;
 }
 
-int64_t block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
-                      struct progress *progress, double run_work, struct arena scratch) {
+void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
+                   struct block_time *time, struct progress *progress, double run_work,
+                   struct arena scratch) {
   const struct measurement *measure = &plan->measure;
   long frame_size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
   double *frame = arena_new(&scratch, double, frame_size);
   double *value = arena_new(&scratch, double, plan->width);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
   struct averages sum = {arena_new(&scratch, double, measure->n_estimators * plan->n_probes),
-                         arena_new(&scratch, double, plan->images ? frame_size : 0),
-                         plan->images ? frame_size : 0};
+                         arena_new(&scratch, double, plan->n_images ? frame_size : 0),
+                         plan->n_images ? frame_size : 0};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
+  struct block_time begin = clock_now(); // the first run's time has what all share
+  memset(time, 0, (size_t)plan->n_times * sizeof *time);
   void *state = plan->cell->integrator->create(measure, &scratch);
-  int64_t most = 0;
-  for (int run = 1; run <= block_runs(plan, block); run++) {
-    int64_t bytes =
-        run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value);
-    most = most < bytes ? bytes : most;
+  for (int run = 1; run <= block_runs(plan, block); run++, begin = clock_now()) {
+    run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value, begin, time);
     for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(value[k]);
     moments_tree_push(&tree, leaf, &scratch);
     progress_advance(progress, run_work);
   }
   moments_tree_root(&tree, out);
-  return most;
 }
 
 // ---- files ----
@@ -121,37 +156,46 @@ static char *block_path(const struct group_plan *plan, uint64_t block, const cha
   return arena_format(arena, "%s/group-%03d-block-%06" PRIu64, folder, plan->number, block);
 }
 
-// The moments of a whole and matching file, else NULL.
-static struct moments *block_load(const struct group_plan *plan, uint64_t block, const char *folder,
-                                  struct block_time *time, struct arena *arena) {
+// A whole and matching file.
+struct block_file {
+  struct block_time *time; // [n_times]
+  struct moments *moments; // [width]
+};
+
+static bool block_load(const struct group_plan *plan, uint64_t block, const char *folder,
+                       struct block_file *file, struct arena *arena) {
   struct text text;
   struct problem ignored = {0};
   struct block_header header;
-  size_t bytes = (size_t)plan->width * sizeof(struct moments);
-  if (!file_read(block_path(plan, block, folder, arena), arena, &text, &ignored)) return NULL;
-  if ((size_t)text.length != sizeof header + sizeof *time + bytes) return NULL;
-  struct moments *moments = arena_new(arena, struct moments, plan->width);
+  size_t times = (size_t)plan->n_times * sizeof *file->time;
+  size_t bytes = (size_t)plan->width * sizeof *file->moments;
+  if (!file_read(block_path(plan, block, folder, arena), arena, &text, &ignored)) return false;
+  if ((size_t)text.length != sizeof header + times + bytes) return false;
+  file->time = arena_new(arena, struct block_time, plan->n_times);
+  file->moments = arena_new(arena, struct moments, plan->width);
   memcpy(&header, text.data, sizeof header);
-  memcpy(time, text.data + sizeof header, sizeof *time);
-  memcpy(moments, text.data + sizeof header + sizeof *time, bytes);
-  struct block_header expected = header_of(plan, block, moments);
-  return memcmp(&header, &expected, sizeof header) == 0 ? moments : NULL;
+  memcpy(file->time, text.data + sizeof header, times);
+  memcpy(file->moments, text.data + sizeof header + times, bytes);
+  struct block_header expected = header_of(plan, block, file->moments);
+  return memcmp(&header, &expected, sizeof header) == 0;
 }
 
-bool block_exists(const struct group_plan *plan, uint64_t block, const char *folder,
-                  struct block_time *time, struct arena scratch) {
-  return block_load(plan, block, folder, time, &scratch) != NULL;
+const struct block_time *block_times(const struct group_plan *plan, uint64_t block,
+                                     const char *folder, struct arena *arena) {
+  struct block_file file;
+  return block_load(plan, block, folder, &file, arena) ? file.time : NULL;
 }
 
 void block_write(const struct group_plan *plan, uint64_t block, const char *folder,
-                 const struct moments *moments, struct block_time time, struct arena scratch) {
+                 const struct moments *moments, const struct block_time *time,
+                 struct arena scratch) {
   struct problem problem = {0};
   struct file_out out;
   struct block_header header = header_of(plan, block, moments);
   if (!file_begin(&out, block_path(plan, block, folder, &scratch), &problem))
     die("%s", problem.text);
   fwrite(&header, sizeof header, 1, out.stream);
-  fwrite(&time, sizeof time, 1, out.stream);
+  fwrite(time, sizeof *time, (size_t)plan->n_times, out.stream);
   fwrite(moments, sizeof *moments, (size_t)plan->width, out.stream);
   if (!file_commit(&out, &problem)) die("%s", problem.text);
 }
@@ -171,13 +215,12 @@ void block_merge(const struct group_plan *plan, const char *folder, struct momen
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
   for (uint64_t block = 0; block < plan->n_blocks; block++) {
-    struct arena file = scratch; // given back after each block
-    struct block_time ignored;
-    struct moments *loaded = block_load(plan, block, folder, &ignored, &file);
-    if (!loaded)
+    struct arena own = scratch; // given back after each block
+    struct block_file file;
+    if (!block_load(plan, block, folder, &file, &own))
       die("%s: block %" PRIu64 " of group %d has gone while the experiment ran", folder, block,
           plan->number);
-    memcpy(leaf, loaded, (size_t)plan->width * sizeof *leaf);
+    memcpy(leaf, file.moments, (size_t)plan->width * sizeof *leaf);
     moments_tree_push(&tree, leaf, &scratch);
   }
   moments_tree_root(&tree, out);

@@ -6,30 +6,30 @@
 #include "run/plan.h"
 #include "run/progress.h"
 
-// Moments over runs 16 block + 1 ... of each of the plan's `width` numbers. After each run the
-// progress advances by `run_work`. Returns the most bytes of photons that an iteration held.
-int64_t block_compute(const struct group_plan *, uint64_t block, struct moments *out,
-                      struct progress *, double run_work, struct arena scratch);
-
-// How many runs the block has: RUNS_PER_BLOCK, or less at the end.
-int block_runs(const struct group_plan *, uint64_t block);
-
-// What a block took; not part of any result.
+// What the runs of a block took until some iteration, all together; not part of any result.
 struct block_time {
   double wall_s, cpu_s;
   int64_t photon_bytes; // the most an iteration held, of photons and what finds them
 };
+
+// Moments over runs 16 block + 1 ... of each of the plan's `width` numbers, and the time at each of
+// its n_times. After each run the progress advances by `run_work`.
+void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
+                   struct block_time *, struct progress *, double run_work, struct arena scratch);
+
+// How many runs the block has: RUNS_PER_BLOCK, or less at the end.
+int block_runs(const struct group_plan *, uint64_t block);
 
 // Blocks of a plan are files in DIRECTORY/blocks/FINGERPRINT, so that the unfinished work of
 // another experiment or version in the same directory is never written over.
 const char *block_folder(const struct plan *, const char *directory, struct arena *);
 
 // The file of a block in that folder. A file of another fingerprint, or a damaged one, is as good
-// as none. Writing dies when the disk fails.
-bool block_exists(const struct group_plan *, uint64_t block, const char *folder,
-                  struct block_time *, struct arena scratch);
+// as none: NULL, else its times [n_times]. Writing dies when the disk fails.
+const struct block_time *block_times(const struct group_plan *, uint64_t block, const char *folder,
+                                     struct arena *);
 void block_write(const struct group_plan *, uint64_t block, const char *folder,
-                 const struct moments *, struct block_time, struct arena scratch);
+                 const struct moments *, const struct block_time *, struct arena scratch);
 
 // Removes the folder of a finished plan and all in it, and DIRECTORY/blocks if it held no other;
 // returns whether it did.

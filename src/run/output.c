@@ -5,6 +5,7 @@
 #include "log/cell_json.h"
 #include "log/log.h"
 #include "run/block.h"
+#include "run/discs.h"
 #include "run/picture.h"
 
 #include <errno.h>
@@ -77,33 +78,40 @@ static void write_group_log(FILE *out, const struct plan *plan, const struct gro
                             struct moments *moments) {
   for (int e = 0; e < group->measure.n_estimators; e++)
     for (int p = 0; p < group->n_probes; p++) {
+      uint64_t n = group->cell->iterations;
       struct moments *at = moments + plan_series(group, e, p);
-      struct series series = {group->group->cell[e],       p,
-                              group->cell->iterations,     at,
-                              group->n_checkpoints,        group->checkpoint,
-                              at + group->cell->iterations};
+      struct series series = {.cell = group->group->cell[e],
+                              .probe = p,
+                              .n_iterations = n,
+                              .iteration = at,
+                              .n_checkpoints = group->n_checkpoints,
+                              .checkpoint = group->checkpoint,
+                              .average = at + n,
+                              .radius2 = group->local ? at + n + group->n_checkpoints : NULL};
       log_write_series(out, &plan->experiment->cell[series.cell], &series);
     }
 }
 
 // images/SCENE-cellCCC-N.exr: mean over runs of the running average after N iterations, and its
-// variance over runs.
+// variance over runs; SCENE-cellCCC-single-I.exr: the same of iteration I alone.
 static bool write_images(const struct outputs *outputs, const struct group_plan *group,
                          const struct moments *moments, struct arena scratch,
                          struct problem *problem) {
-  if (!group->images) return true;
+  if (!group->n_images) return true;
   char *folder = path_of(outputs->directory, "images", &scratch);
   if (!file_make_directory(folder, problem)) return false;
   for (int e = 0; e < group->measure.n_estimators; e++)
-    for (int m = 0; m < group->cell->n_images; m++) {
+    for (int m = 0; m < group->n_images; m++) {
       struct arena own = scratch;
       const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];
+      bool single = m >= cell->n_images;
+      uint64_t i = single ? cell->single[m - cell->n_images] : cell->image[m];
       struct image image =
           picture_of(&group->measure, moments + plan_image(group, e, m), moments_variance, &own);
-      char *n = arena_format(&own, "%" PRIu64, cell->image[m]);
-      image.manifest = cell_json_line(cell, "average_of", n, &own);
-      char *path =
-          arena_format(&own, "%s/%s-cell%03d-%s.exr", folder, cell->scene, cell->number, n);
+      char *n = arena_format(&own, "%" PRIu64, i);
+      image.manifest = cell_json_line(cell, single ? "iteration" : "average_of", n, &own);
+      char *path = arena_format(&own, "%s/%s-cell%03d-%s%s.exr", folder, cell->scene, cell->number,
+                                single ? "single-" : "", n);
       if (!image_write(path, &image, problem)) return false;
     }
   return true;
@@ -122,7 +130,8 @@ static bool write_logs(const struct outputs *outputs, struct arena scratch,
     struct moments *moments = arena_new(&own, struct moments, group->width);
     block_merge(group, block_folder(plan, outputs->directory, &own), moments, own);
     write_group_log(log.stream, plan, group, moments);
-    if (!write_images(outputs, group, moments, own, problem)) {
+    if (!write_images(outputs, group, moments, own, problem) ||
+        !discs_write(group, plan->experiment, outputs->directory, own, problem)) {
       file_abandon(&log);
       return false;
     }
@@ -146,21 +155,30 @@ static bool write_probes(const struct outputs *outputs, struct arena scratch,
   return file_commit(&out, problem);
 }
 
+// A row for each iteration whose average is kept as an image, and the last: what all runs of the
+// block took until then.
+static void write_times(FILE *out, const struct group_plan *group, uint64_t block,
+                        const struct block_time *time) {
+  const struct cell *cell = group->cell;
+  for (int t = 0; time && t < group->n_times; t++)
+    fprintf(out, "%d,%" PRIu64 ",%s,%s,%" PRIu64 ",%" PRIu64 ",%d,%" PRId64 ",%.6f,%.6f\n",
+            group->number, block, cell->scene, cell->integrator->name, cell->photons,
+            plan_time_at(group, t), block_runs(group, block), time[t].photon_bytes, time[t].wall_s,
+            time[t].cpu_s);
+}
+
 static bool write_timing(const struct outputs *outputs, struct arena scratch,
                          struct problem *problem) {
   struct file_out out;
   if (!file_begin(&out, path_of(outputs->directory, "timing.csv", &scratch), problem)) return false;
-  fputs("group,block,scene,photons,iterations,photon_bytes,wall_s,cpu_s\n", out.stream);
+  fputs("group,block,scene,integrator,photons,iterations,runs,photon_bytes,wall_s,cpu_s\n",
+        out.stream);
   const char *folder = block_folder(outputs->plan, outputs->directory, &scratch);
   for (int g = 0; g < outputs->plan->n_groups; g++) {
     const struct group_plan *group = &outputs->plan->group[g];
-    const struct cell *cell = group->cell;
     for (uint64_t b = 0; b < group->n_blocks; b++) {
-      struct block_time time = {0};
-      block_exists(group, b, folder, &time, scratch);
-      fprintf(out.stream, "%d,%" PRIu64 ",%s,%" PRIu64 ",%" PRIu64 ",%" PRId64 ",%.6f,%.6f\n", g, b,
-              cell->scene, cell->photons, cell->iterations, time.photon_bytes, time.wall_s,
-              time.cpu_s);
+      struct arena own = scratch;
+      write_times(out.stream, group, b, block_times(group, b, folder, &own));
     }
   }
   return file_commit(&out, problem);

@@ -158,7 +158,7 @@ static bool plan_pixels(struct group_plan *plan, struct arena *arena, struct pro
   }
   plan->probe_point = arena_new(arena, int, plan->n_probes);
   struct measurement *measure = &plan->measure;
-  bool film = plan->images || (measure->skip_off & SKIP_PROBES);
+  bool film = plan->n_images > 0 || plan->cell->n_discs > 0 || (measure->skip_off & SKIP_PROBES);
   measure->n_points = plan->n_probes;
   measure->pixel = film ? plan_film(&plan->loaded->scene, &measure->n_points, arena, problem)
                         : plan->probe_pixel;
@@ -197,10 +197,14 @@ static bool plan_estimators(struct group_plan *plan, const struct experiment *ex
 static void plan_layout(struct group_plan *plan, struct arena *arena) {
   const struct measurement *measure = &plan->measure;
   plan->checkpoint = plan_checkpoints(plan->cell->iterations, &plan->n_checkpoints, arena);
-  plan->series_width = (long)plan->cell->iterations + plan->n_checkpoints;
+  plan->local = plan->cell->integrator->local != NULL;
+  plan->series_width = (long)plan->cell->iterations * (plan->local ? 2 : 1) + plan->n_checkpoints;
   long image = (long)measure->n_points * measure->features.n_channels;
-  plan->width = measure->n_estimators * (plan->n_probes * plan->series_width +
-                                         (plan->images ? plan->cell->n_images : 0) * image);
+  plan->width =
+      measure->n_estimators * (plan->n_probes * plan->series_width + plan->n_images * image);
+  const struct cell *cell = plan->cell;
+  bool last = cell->n_images && cell->image[cell->n_images - 1] == cell->iterations;
+  plan->n_times = cell->n_images + !last;
   plan->n_blocks = (plan->cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
 }
 
@@ -211,7 +215,11 @@ long plan_series(const struct group_plan *plan, int estimator, int probe) {
 long plan_image(const struct group_plan *plan, int estimator, int image) {
   long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
   return plan_series(plan, plan->measure.n_estimators, 0) +
-         ((long)estimator * plan->cell->n_images + image) * size;
+         ((long)estimator * plan->n_images + image) * size;
+}
+
+uint64_t plan_time_at(const struct group_plan *plan, int t) {
+  return t < plan->cell->n_images ? plan->cell->image[t] : plan->cell->iterations;
 }
 
 static bool plan_group(struct plan *plan, const struct group *group, struct group_plan *out,
@@ -225,7 +233,7 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
   if (scene->n_lights == 0)
     return problem_set(problem, "%s: the scene has no light, there is nothing to measure",
                        cell->scene_path);
-  out->images = cell->n_images > 0;
+  out->n_images = cell->n_images + cell->n_singles;
   out->measure = plan_measurement(cell, scene, out->loaded->bvh, plan->options.skip_off);
   if (!plan_pixels(out, arena, problem) || !check_probes_hit(out, *arena, problem)) return false;
   if (!plan_estimators(out, plan->experiment, arena, problem)) return false;

@@ -24,8 +24,9 @@ struct loaded_scene {
 };
 
 // One run of a group yields a vector of `width` numbers: for each estimator, for each probe,
-// `iterations` luminances and the running averages at the checkpoints; then for each estimator, for
-// each kept image, n_points * n_channels running averages.
+// `iterations` luminances, the running averages at the checkpoints and, of local statistics,
+// `iterations` squared radii; then for each estimator, for each kept image, n_points * n_channels
+// values: running averages, then those of iterations alone.
 struct group_plan {
   int number;
   const struct group *group;
@@ -37,7 +38,9 @@ struct group_plan {
   int *probe_point; // where each probe is among the measured points
   int n_checkpoints;
   uint64_t *checkpoint;
-  bool images; // the whole film is measured
+  int n_images; // kept: averages, then single iterations; if any, the whole film is measured
+  bool local;   // squared radii are kept
+  int n_times;  // at how many iterations the time is taken: of images, and the last
   long series_width, width;
   uint64_t n_blocks;
   uint64_t fingerprint; // of all that determines the numbers
@@ -69,6 +72,9 @@ bool plan_estimator(const struct cell *, const struct scene *, struct estimator 
 // Offsets into the vector.
 long plan_series(const struct group_plan *, int estimator, int probe);
 long plan_image(const struct group_plan *, int estimator, int image);
+
+// The iteration after which time t of n_times is taken.
+uint64_t plan_time_at(const struct group_plan *, int t);
 
 // What the probes of a group see (reference NAN).
 void plan_probes(const struct group_plan *, struct probe *, struct arena scratch);

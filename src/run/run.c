@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // clock_gettime
 #include "run/run.h"
 
 #include "base/file.h"
@@ -10,7 +9,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 // One block of one group.
 struct unit {
@@ -59,8 +57,8 @@ static void add_missing(const struct plan *plan, int g, const char *folder, stru
   const struct group_plan *group = &plan->group[g];
   ptrdiff_t first = units->count;
   for (uint64_t b = 0; b < group->n_blocks; b++) {
-    struct block_time ignored;
-    if (!block_exists(group, b, folder, &ignored, *arena))
+    struct arena scratch = *arena;
+    if (!block_times(group, b, folder, &scratch))
       *arena_push(arena, units) = (struct unit){g, b, 0};
   }
   if (units->count == first) return;
@@ -81,19 +79,12 @@ static struct units units_left(const struct plan *plan, const char *folder, stru
   return units;
 }
 
-static double thread_cpu_s(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void compute(const struct group_plan *plan, const struct unit *unit, const char *folder,
                     struct progress *progress, struct arena scratch) {
-  double wall = progress_clock_s(), cpu = thread_cpu_s();
   struct moments *moments = arena_new(&scratch, struct moments, plan->width);
+  struct block_time *time = arena_new(&scratch, struct block_time, plan->n_times);
   double run_work = unit->work / block_runs(plan, unit->block);
-  int64_t bytes = block_compute(plan, unit->block, moments, progress, run_work, scratch);
-  struct block_time time = {progress_clock_s() - wall, thread_cpu_s() - cpu, bytes};
+  block_compute(plan, unit->block, moments, time, progress, run_work, scratch);
   block_write(plan, unit->block, folder, moments, time, scratch);
 }
 

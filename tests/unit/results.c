@@ -20,7 +20,8 @@ static void what_is_read_back_is_what_was_measured(void **state) {
   assert_true(plan_make(&experiment, quiet, &arena, &plan, &problem));
   struct moments *expected = arena_new(&arena, struct moments, plan.group[0].width);
   struct progress silent = {.quiet = true};
-  block_compute(&plan.group[0], 0, expected, &silent, 0, arena);
+  struct block_time ignored;
+  block_compute(&plan.group[0], 0, expected, &ignored, &silent, 0, arena);
   run_into(&experiment, path_in("back"));
   struct results results = results_of(path_in("back"));
   assert_int_equal(results.n_series, 2);
