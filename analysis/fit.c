@@ -75,7 +75,8 @@ static void judge(struct fit *fit) {
 void fit_predicted(const struct results *results, const struct prediction *prediction,
                    struct arena *arena, struct fit *fit) {
   int max_points = 0;
-  for (int s = 0; s < results->n_series; s++) max_points += 2 * results->series[s].n_checkpoints;
+  for (int s = 0; s < results->n_series; s++)
+    max_points += 2 * N_CURVE_SERIES * results->series[s].n_checkpoints;
   *fit = (struct fit){
       .experiment = &results->experiment,
       .row = arena_new(arena, struct fit_row, 2 * results->n_series),

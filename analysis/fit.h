@@ -47,13 +47,16 @@ struct fit_row {
   const char *why; // there is no fit; or NULL
 };
 
-// The measured curve of the average beside the predicted one.
+// The measured curves beside the predicted ones: of the running average, and of single iterations,
+// whose variances or biases are averaged in bins, the predicted ones over the same iterations.
+enum curve_series { CURVE_ITERATION, CURVE_AVERAGE, N_CURVE_SERIES };
 struct fit_point {
   const struct fit_row *row;
-  uint64_t n;                    // iterations averaged
+  enum curve_series series;
+  uint64_t first, n;             // iterations first..n
   double measured, lower, upper; // over runs, 95 % interval
-  double pooled;                 // variance only: from the iterations' variances; else NAN
-  double predicted;
+  double pooled;    // variance of the average only: from the iterations' variances; else NAN
+  double predicted; // NAN: theory says nothing of some of these iterations
 };
 
 struct fit {

@@ -114,8 +114,9 @@ static void print_point(FILE *stream, const struct fit_point *point) {
                row->verdict == VERDICT_AGREE || row->verdict == VERDICT_DISAGREE;
   char buffer[CELL_KEY_SIZE];
   for (int k = 0; k < CELL_KEYS; k++) print_field(stream, cell_keys[k].text(row->cell, 17, buffer));
-  fprintf(stream, "%d,%d,%s,%llu", row->probe->x, row->probe->y, quantity_name(row->quantity),
-          (unsigned long long)point->n);
+  fprintf(stream, "%d,%d,%s,%s,%llu,%llu", row->probe->x, row->probe->y,
+          quantity_name(row->quantity), point->series == CURVE_AVERAGE ? "average" : "iteration",
+          (unsigned long long)point->first, (unsigned long long)point->n);
   const double value[] = {point->measured, point->lower, point->upper, point->pooled,
                           known ? point->predicted : NAN};
   for (int k = 0; k < 5; k++)
@@ -127,7 +128,7 @@ bool fit_write_curves(const struct fit *fit, const char *path, struct problem *p
   struct file_out out;
   if (!file_begin(&out, path, problem)) return false;
   for (int k = 0; k < CELL_KEYS; k++) fprintf(out.stream, "%s,", cell_keys[k].name);
-  fputs("x,y,quantity,N,measured,lower,upper,pooled,predicted\n", out.stream);
+  fputs("x,y,quantity,series,first,N,measured,lower,upper,pooled,predicted\n", out.stream);
   for (int p = 0; p < fit->n_points; p++) print_point(out.stream, &fit->point[p]);
   return file_commit(&out, problem);
 }

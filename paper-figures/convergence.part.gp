@@ -17,7 +17,7 @@ figures = results."/figures"
 quoted(path) = "'".system("printf %s \"".path."\" | sed \"s/'/'\\\\\\\\''/g\"")."'"
 header = system("head -n 1 ".quoted(data)." 2>/dev/null")
 before = "cell,scene,"
-after = ",x,y,quantity,N,measured,lower,upper,pooled,predicted"
+after = ",x,y,quantity,series,first,N,measured,lower,upper,pooled,predicted"
 keys_end = strlen(header) - strlen(after)
 if (keys_end <= strlen(before) || header[1:strlen(before)] ne before || header[keys_end + 1:*] ne after) {
   print data.": missing, or its columns are not ".before."...".after
@@ -79,9 +79,10 @@ add_biased(c, q, p) = q eq "variance" || p == 0 || strstrt(biased, sprintf("|%d|
   (biased = biased.sprintf("|%d|", c), 1)
 add_value(i, j) = (values[i] = values[i].strcol(word(keys, j))." ", 0)
 add_cell(i, c) = scene_of[i] ? 0 : (scene_of[i] = c, sum [j = 1:n_keys] add_value(i, j))
-# Rows of a scene and of an integrator that are shown, at the probe that is shown.
+# Rows of averages, of a scene and of an integrator that are shown, at the probe that is shown.
 is_named(s, list) = list eq "" || strstrt(" ".list." ", " ".s." ") > 0
-take(i, c, q, xy) = c == 0 || !is_named(strcol("integrator"), only) ? 0 : (add_pixel(c, xy), add_biased(c, q, column("predicted")), \
+take(i, c, q, xy) = c == 0 || strcol("series") ne "average" || !is_named(strcol("integrator"), only) ? 0 : \
+  (add_pixel(c, xy), add_biased(c, q, column("predicted")), \
   pixel[c] ne xy ? 0 : (add_cell(i, c), !visible(q) ? 0 : add_row(row_name(q, i)), \
     add_line(row_name(q, i), column("predicted"))))
 set table $seen
@@ -143,7 +144,7 @@ n_shown = n_series > most ? most : n_series
 if (left_out ne "") { print data.": ".left_out }
 
 # ---- the points: blocks $variance1, $bias1, ... of N, size, lower, upper, predicted, found ----
-is_mine(i, q) = column("cell") == i - 1 && strcol("quantity") eq q && \
+is_mine(i, q) = column("cell") == i - 1 && strcol("quantity") eq q && strcol("series") eq "average" && \
   strcol("x").",".strcol("y") eq pixel[scene_of[i]]
 block(q, i) = "$".q.i
 is_shown(i, q) = scene_of[i] && series_of[i] <= most && strstrt(rows, row_name(q, i))

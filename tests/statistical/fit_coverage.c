@@ -21,6 +21,7 @@ enum { N_NAMES = sizeof names / sizeof *names };
 
 struct tally {
   int rows, rates, covered, rejected[N_NAMES];
+  int last_covered[N_CURVE_SERIES]; // theory at the end of the curve
 };
 
 static void count_row(struct tally *tally, const struct fit_row *row) {
@@ -35,6 +36,12 @@ static void count_row(struct tally *tally, const struct fit_row *row) {
   }
 }
 
+static void count_point(struct tally *tally, const struct fit_point *point, uint64_t last) {
+  if (point->n != last) return;
+  tally->last_covered[point->series] +=
+      point->lower <= point->predicted && point->predicted <= point->upper;
+}
+
 // tally[0]: variance, tally[1]: bias. Verdicts are those of whole runs.
 static int study(const struct synthetic *s, struct tally tally[2]) {
   int disagree = 0;
@@ -43,6 +50,9 @@ static int study(const struct synthetic *s, struct tally tally[2]) {
     struct arena scratch = arena;
     struct fit fit = synthetic_fit_with(s, &theory, e, &scratch);
     for (int r = 0; r < fit.n_rows; r++) count_row(&tally[r], &fit.row[r]);
+    for (int p = 0; p < fit.n_points; p++)
+      count_point(&tally[fit.point[p].row->quantity == QUANTITY_BIAS], &fit.point[p],
+                  s->iterations);
     disagree += fit.verdict == VERDICT_DISAGREE;
   }
   return disagree;
@@ -51,6 +61,10 @@ static int study(const struct synthetic *s, struct tally tally[2]) {
 static void check_coverage(const struct tally *tally) {
   assert_in_range(tally->rates, EXPERIMENTS * 99 / 100, EXPERIMENTS);
   assert_in_range(tally->covered, FEWEST, MOST);
+}
+
+static void check_curves(const struct tally *tally) {
+  for (int k = 0; k < N_CURVE_SERIES; k++) assert_in_range(tally->last_covered[k], FEWEST, MOST);
 }
 
 static void check_sizes(const struct tally *tally) {
@@ -67,7 +81,8 @@ static void test_gaussian(void **state) {
   s.curvature = 0.5, s.photons_1 = 200;
   struct tally tally[2] = {{0}};
   study(&s, tally);
-  for (int r = 0; r < 2; r++) check_coverage(&tally[r]), check_sizes(&tally[r]);
+  for (int r = 0; r < 2; r++)
+    check_coverage(&tally[r]), check_sizes(&tally[r]), check_curves(&tally[r]);
 }
 
 // The family-wise level: at most 1 % of the runs may disagree; 21 is 4 standard deviations more.
@@ -77,7 +92,8 @@ static void test_counts(void **state) {
   s.name = "fit: coverage with counts", s.curvature = 0.5;
   struct tally tally[2] = {{0}};
   assert_in_range(study(&s, tally), 0, 21);
-  for (int r = 0; r < 2; r++) check_coverage(&tally[r]), check_sizes(&tally[r]);
+  for (int r = 0; r < 2; r++)
+    check_coverage(&tally[r]), check_sizes(&tally[r]), check_curves(&tally[r]);
 }
 
 // One photon in the first disc, 0.17 in the last: excess kurtosis 1 to 6.

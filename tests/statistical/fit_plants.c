@@ -85,6 +85,37 @@ static void test_fixed_radius(void **state) {
   assert_rejects(&fit.row[1], "rate");
 }
 
+static double shrinks(double alpha, double rho, uint64_t i) {
+  (void)rho;
+  return law_find("knaus-zwicker")->rho(alpha, i);
+}
+
+// Theory's own radius is constant: variance falls as 1/N and bias, which does not fall, has the
+// rate 0, with and without closed form. One that shrinks all the same is found out. The standard
+// errors of the rates are sqrt(2 / ((K - 1) N)) = 0.008 and sqrt(V / (K N)) / |b| = 0.003.
+static void test_constant_radius(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: constant radius", s.law = "fixed", s.reference_se = 0.001;
+  for (int k = 0; k < 2; k++) {
+    s.closed_form = k == 0;
+    struct fit fit = fit_of(&s);
+    assert_int_equal(fit.row[0].verdict, VERDICT_AGREE);
+    assert_int_equal(fit.row[1].verdict, VERDICT_AGREE);
+    assert_true(fit.row[0].rate_theory == 1 && fabs(fit.row[0].rate - 1) < 0.05);
+    assert_true(fit.row[1].rate_theory == 0 && fabs(fit.row[1].rate) < 0.05);
+    struct synthetic wrong = s;
+    wrong.r2 = shrinks;
+    fit = fit_of(&wrong);
+    assert_rejects(&fit.row[0], "rate");
+    assert_rejects(&fit.row[1], "rate");
+    s.curvature = 0;
+    fit = fit_of(&s);
+    assert_int_equal(fit.row[1].verdict, VERDICT_NOT_DETECTED);
+    s.curvature = base.curvature;
+  }
+}
+
 // A truncated Gaussian that was not normalised: 0.989 of what it should be.
 static void test_unnormalised_kernel(void **state) {
   (void)state;
@@ -227,6 +258,8 @@ int main(void) {
       {"an index from 0 disagrees", test_zero_based_index, 0, 0, 0},
       {"the law of volumes on a surface disagrees", test_volume_law, 0, 0, 0},
       {"a radius that does not shrink disagrees", test_fixed_radius, 0, 0, 0},
+      {"a constant radius that theory expects agrees, with rates 1 and 0", test_constant_radius, 0,
+       0, 0},
       {"a kernel that is not normalised disagrees", test_unnormalised_kernel, 0, 0, 0},
       {"iterations with the same photons are not independent", test_reused_seed, 0, 0, 0},
       {"where there is no bias none is detected", test_zero_bias, 0, 0, 0},

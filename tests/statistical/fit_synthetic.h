@@ -11,7 +11,8 @@
 
 struct synthetic {
   const char *name; // the seed
-  double alpha;     // theory's
+  const char *law;  // theory's; NULL: Knaus and Zwicker's
+  double alpha;
   uint64_t iterations, runs;
   double photons_1; // lambda_1, expected in the first disc
   double curvature; // irradiance 1 - curvature (distance / r_1)^2
@@ -82,11 +83,15 @@ static inline struct ring_mean synthetic_ring(const struct synthetic *s) {
   return ring;
 }
 
-// The law is Knaus and Zwicker's, the kernel the box.
+static inline const struct law *synthetic_law(const struct synthetic *s) {
+  return law_find(s->law ? s->law : "knaus-zwicker");
+}
+
+// The kernel is the box.
 static inline struct prediction synthetic_prediction(const struct synthetic *s,
                                                      struct arena *arena) {
   struct family_table *table = arena_new(arena, struct family_table, 1);
-  *table = family_table_new(law_find("knaus-zwicker"), s->iterations, arena);
+  *table = family_table_new(synthetic_law(s), s->iterations, arena);
   struct family *family = arena_new(arena, struct family, 1);
   *family = family_new(table, s->alpha, arena);
   if (!s->closed_form) return prediction_from_reference(1, s->reference_se, 2, family, arena);
@@ -133,7 +138,7 @@ static inline struct fit synthetic_fit_with(const struct synthetic *s,
                         .reference_radius = &reference_radii[0],
                         .integrator = &synthetic_integrator,
                         .kernel = kernel_find("box"),
-                        .law = law_find("knaus-zwicker"),
+                        .law = synthetic_law(s),
                         .alpha = s->alpha,
                         .radius = 1,
                         .quantities = QUANTITY_VARIANCE | QUANTITY_BIAS};
