@@ -41,7 +41,10 @@ const struct experiment_key experiment_keys[] = {
      key_read_single_images},
     {"discs", "(none)", "i after which run 1's points and their own radii are kept (ppm, sppm)",
      false, key_read_discs},
-    {"reference", "analytic", "bias against: analytic, none or {integrator: path, se: 0.001}",
+    {"reference", "analytic",
+     "bias against: analytic, richardson (the same photons at half the radius), none or "
+     "{integrator: "
+     "path, se: 0.001}",
      false, key_read_reference},
     {"parts", "(one)", "list of mappings, each an experiment that inherits the keys above it",
      false, NULL},
@@ -182,6 +185,17 @@ static bool check_list(struct reader *reader, const struct level *level, const c
                     (unsigned long long)cell->iterations);
 }
 
+// Half the radius must mean half the radius at every point and iteration.
+static bool check_richardson(struct reader *reader, const struct level *level,
+                             const struct cell *cell) {
+  if (!cell_has_companion(cell)) return true;
+  if (cell->integrator->photons && cell->radius > 0 && !cell->law->count) return true;
+  return problem_at(reader->reading.problem, level->value[key_number("reference")]->place,
+                    "reference: richardson needs photons and radii that no photon changes (%s, "
+                    "law %s%s)",
+                    cell->integrator->name, cell->law->name, cell->k ? ", k" : "");
+}
+
 static bool check_cell(struct reader *reader, const struct level *level, struct cell *cell) {
   struct problem *problem = reader->reading.problem;
   if (!cell->scene_path) return problem_at(problem, level->place, "scene is missing");
@@ -191,7 +205,8 @@ static bool check_cell(struct reader *reader, const struct level *level, struct 
     return problem_at(problem, level->value[key_number("discs")]->place,
                       "discs: the points of integrator %s have no radii of their own",
                       cell->integrator->name);
-  return check_list(reader, level, "images", cell->image, cell->n_images, cell) &&
+  return check_richardson(reader, level, cell) &&
+         check_list(reader, level, "images", cell->image, cell->n_images, cell) &&
          check_list(reader, level, "single-images", cell->single, cell->n_singles, cell) &&
          check_list(reader, level, "discs", cell->discs, cell->n_discs, cell);
 }

@@ -15,6 +15,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 enum direct { DIRECT_PHOTONS, DIRECT_NEE };
 enum quantity { QUANTITY_VARIANCE = 1, QUANTITY_BIAS = 2 }; // bits
@@ -48,7 +49,7 @@ struct cell {
   int n_singles;
   uint64_t *discs;         // the points of run 1 and their radii after these passes are kept
   int n_discs;
-  const char *reference_integrator; // "path", "analytic" or "none"
+  const char *reference_integrator; // "path", "analytic", "richardson" or "none"
   double reference_se;     // absolute target standard error of the reference, radiance; 0: none needed
 };
 
@@ -62,6 +63,11 @@ const char *cell_settle(struct cell *);
 // Whether the radius is the same at all points, in scene units.
 static inline bool cell_radius_is_known(const struct cell *cell) {
   return cell->reference_radius->global && cell->radius > 0;
+}
+
+// Whether the cell's photons are also gathered at half the radius: reference richardson.
+static inline bool cell_has_companion(const struct cell *cell) {
+  return strcmp(cell->reference_integrator, "richardson") == 0;
 }
 
 struct experiment {

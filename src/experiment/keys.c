@@ -239,9 +239,9 @@ bool key_read_probes(struct reading *reading, const struct node *node, struct ce
 
 static bool read_reference_name(struct reading *reading, const struct node *node,
                                 struct cell *cell) {
-  static const char *const names[] = {"analytic", "path", "none"};
+  static const char *const names[] = {"analytic", "path", "richardson", "none"};
   int choice;
-  if (!value_choice(reading, node, names, 3, &choice)) return false;
+  if (!value_choice(reading, node, names, 4, &choice)) return false;
   cell->reference_integrator = names[choice];
   return true;
 }
@@ -266,7 +266,7 @@ static bool read_reference_mapping(struct reading *reading, const struct node *n
   return true;
 }
 
-// `analytic`, `none`, or {integrator: path, se: 0.001}.
+// `analytic`, `richardson`, `none`, or {integrator: path, se: 0.001}.
 bool key_read_reference(struct reading *reading, const struct node *node, struct cell *cell) {
   cell->reference_integrator = "analytic";
   cell->reference_se = 0;

@@ -12,7 +12,8 @@ const struct log_column log_columns[] = {
     {"alpha", "1", "fraction kept"},
     {"series", "name",
      "iteration: of iteration i alone; average: running average of 1..i; squared-radius: of the "
-     "probe itself in iteration i (local statistics)"},
+     "probe in iteration i (local statistics); richardson: bias of iteration i, 4/3 of what half "
+     "the radius takes away"},
     {"i", "1", "iteration, from 1"},
     {"radius", "reference radius", "kernel support of iteration i; scene unit where it is global"},
     {"n", "1", "runs"},
@@ -44,6 +45,8 @@ void log_write_series(FILE *out, const struct cell *cell, const struct series *s
     write_row(out, cell, series->probe, "average", series->checkpoint[k], series->average[k]);
   for (uint64_t i = 1; series->radius2 && i <= series->n_iterations; i++)
     write_row(out, cell, series->probe, "squared-radius", i, series->radius2[i - 1]);
+  for (uint64_t i = 1; series->richardson && i <= series->n_iterations; i++)
+    write_row(out, cell, series->probe, "richardson", i, series->richardson[i - 1]);
 }
 
 const char probes_header[] = "cell,probe,x,y,hit,px,py,pz,nx,ny,nz,scale_r,scale_g,scale_b,"

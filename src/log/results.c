@@ -153,6 +153,8 @@ static void series_reserve(struct results *results, struct arena *arena) {
       series->average = arena_new(arena, struct moments, (ptrdiff_t)n);
       if (results->experiment.cell[c].integrator->local)
         series->radius2 = arena_new(arena, struct moments, (ptrdiff_t)n);
+      if (cell_has_companion(&results->experiment.cell[c]))
+        series->richardson = arena_new(arena, struct moments, (ptrdiff_t)n);
     }
 }
 
@@ -178,6 +180,8 @@ static bool keep_moments(struct csv *csv, struct series *series, const char *nam
   if (strcmp(name, "average") == 0) return keep_average(csv, series, i, m);
   if (series->radius2 && strcmp(name, "squared-radius") == 0)
     return keep_iteration(csv, series->radius2, i, m);
+  if (series->richardson && strcmp(name, "richardson") == 0)
+    return keep_iteration(csv, series->richardson, i, m);
   return csv_bad(csv, "a row of an unknown series");
 }
 
@@ -202,7 +206,9 @@ static bool read_log_row(struct csv *csv, struct results *results) {
 
 static bool series_is_complete(const struct series *series) {
   for (uint64_t i = 0; i < series->n_iterations; i++)
-    if (series->iteration[i].n == 0 || (series->radius2 && series->radius2[i].n == 0)) return false;
+    if (series->iteration[i].n == 0 || (series->radius2 && series->radius2[i].n == 0) ||
+        (series->richardson && series->richardson[i].n == 0))
+      return false;
   int n = series->n_checkpoints;
   return n > 0 && series->checkpoint[n - 1] == series->n_iterations;
 }

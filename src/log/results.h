@@ -27,9 +27,10 @@ struct series {
   uint64_t n_iterations;
   struct moments *iteration; // [n_iterations]: iteration i at i - 1
   int n_checkpoints;
-  uint64_t *checkpoint;    // N
-  struct moments *average; // of the running average after N iterations
-  struct moments *radius2; // [n_iterations], scene units^2: of a local law's radius; NULL: none
+  uint64_t *checkpoint;       // N
+  struct moments *average;    // of the running average after N iterations
+  struct moments *radius2;    // [n_iterations], scene units^2: of a local law's radius; NULL: none
+  struct moments *richardson; // [n_iterations]: bias of iteration i by Richardson; NULL: none
 };
 
 struct results {

@@ -18,12 +18,12 @@ struct averages {
   long film_size;
 };
 
-// Image m of all estimators: `film` divided by n.
+// Image m of all cells: `film` divided by n.
 static void keep_image(const struct group_plan *plan, int m, const double *film, double n,
                        double *value) {
   long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
-  for (int e = 0; e < plan->measure.n_estimators; e++)
-    for (long k = 0; k < size; k++) value[plan_image(plan, e, m) + k] = film[e * size + k] / n;
+  for (int c = 0; c < plan->group->n_cells; c++)
+    for (long k = 0; k < size; k++) value[plan_image(plan, c, m) + k] = film[c * size + k] / n;
 }
 
 static void keep_images(const struct group_plan *plan, uint64_t i, const double *frame,
@@ -38,29 +38,39 @@ static void keep_images(const struct group_plan *plan, uint64_t i, const double 
 // The probes' squared radii of iteration i, before it.
 static void keep_radii(const struct group_plan *plan, uint64_t i, const void *state,
                        double *value) {
-  int n = plan->measure.n_estimators;
   const double *r2 = plan->cell->integrator->local(state)->r2;
-  for (int e = 0; e < n; e++)
+  for (int c = 0; c < plan->group->n_cells; c++)
     for (int p = 0; p < plan->n_probes; p++)
-      value[plan_series(plan, e, p) + (long)plan->cell->iterations + plan->n_checkpoints +
-            (long)(i - 1)] = r2[(long)plan->probe_point[p] * n + e];
+      value[plan_series(plan, c, p) + plan->radius_at + (long)(i - 1)] =
+          r2[(long)plan->probe_point[p] * plan->measure.n_estimators + c];
+}
+
+static double probe_value(const struct group_plan *plan, const double *frame, int estimator,
+                          int probe) {
+  int n_channels = plan->measure.features.n_channels;
+  long point = (long)estimator * plan->measure.n_points + plan->probe_point[probe];
+  return luminance(frame + point * n_channels, n_channels);
+}
+
+// Iteration i's frame into the series of one cell at one probe. A bias that is proportional to r^2
+// is 4/3 of what half the radius takes away (Richardson; theory 4.1).
+static void keep_probe(const struct group_plan *plan, uint64_t i, int checkpoint,
+                       const double *frame, int cell, int probe, double *sum, double *value) {
+  double *series = value + plan_series(plan, cell, probe);
+  double x = probe_value(plan, frame, cell, probe);
+  *sum += series[i - 1] = x;
+  if (checkpoint >= 0) series[plan->average_at + checkpoint] = *sum / (double)i;
+  if (plan->companion[cell])
+    series[plan->richardson_at + (long)(i - 1)] =
+        4.0 / 3 * (x - probe_value(plan, frame, plan->companion[cell], probe));
 }
 
 // Iteration i's frame into the run's vector.
 static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, const double *frame,
                  struct averages *sum, double *value) {
-  const struct measurement *measure = &plan->measure;
-  int n_channels = measure->features.n_channels;
-  for (int e = 0; e < measure->n_estimators; e++)
-    for (int p = 0; p < plan->n_probes; p++) {
-      long at = ((long)e * measure->n_points + plan->probe_point[p]) * n_channels;
-      double *series = value + plan_series(plan, e, p);
-      double *total = &sum->probe[e * plan->n_probes + p];
-      series[i - 1] = luminance(frame + at, n_channels);
-      *total += series[i - 1];
-      if (checkpoint >= 0)
-        series[plan->cell->iterations + (uint64_t)checkpoint] = *total / (double)i;
-    }
+  for (int c = 0; c < plan->group->n_cells; c++)
+    for (int p = 0; p < plan->n_probes; p++)
+      keep_probe(plan, i, checkpoint, frame, c, p, &sum->probe[c * plan->n_probes + p], value);
   if (!plan->n_images) return;
   for (long k = 0; k < sum->film_size; k++) sum->film[k] += frame[k];
   keep_images(plan, i, frame, sum->film, value);
@@ -86,13 +96,13 @@ static void run_once(const struct group_plan *plan, void *state, uint64_t run, d
                      struct averages *sum, double *value, struct block_time begin,
                      struct block_time *time) {
   const struct integrator_type *integrator = plan->cell->integrator;
-  memset(sum->probe, 0, (size_t)(plan->measure.n_estimators * plan->n_probes) * sizeof *sum->probe);
+  memset(sum->probe, 0, (size_t)(plan->group->n_cells * plan->n_probes) * sizeof *sum->probe);
   memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
   integrator->begin(state, run);
   int next = 0, t = 0;
   int64_t most = 0;
   for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
-    if (plan->local) keep_radii(plan, i, state, value);
+    if (plan->radius_at) keep_radii(plan, i, state, value);
     integrator->step(state, i, frame);
     int64_t bytes = integrator->bytes ? integrator->bytes(state) : 0;
     most = most < bytes ? bytes : most;
@@ -112,13 +122,13 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                    struct block_time *time, struct progress *progress, double run_work,
                    struct arena scratch) {
   const struct measurement *measure = &plan->measure;
-  long frame_size = (long)measure->n_estimators * measure->n_points * measure->features.n_channels;
-  double *frame = arena_new(&scratch, double, frame_size);
+  long estimate = (long)measure->n_points * measure->features.n_channels;
+  long film_size = plan->n_images ? plan->group->n_cells * estimate : 0;
+  double *frame = arena_new(&scratch, double, measure->n_estimators *estimate);
   double *value = arena_new(&scratch, double, plan->width);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
-  struct averages sum = {arena_new(&scratch, double, measure->n_estimators * plan->n_probes),
-                         arena_new(&scratch, double, plan->n_images ? frame_size : 0),
-                         plan->n_images ? frame_size : 0};
+  struct averages sum = {arena_new(&scratch, double, plan->group->n_cells * plan->n_probes),
+                         arena_new(&scratch, double, film_size), film_size};
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   struct block_time begin = clock_now(); // the first run's time has what all share
   memset(time, 0, (size_t)plan->n_times * sizeof *time);

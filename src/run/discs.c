@@ -51,7 +51,7 @@ static bool write_cells(const struct group_plan *group, const struct experiment 
                         const struct local *local, uint64_t i, const char *folder,
                         struct arena scratch, struct problem *problem) {
   struct camera_finder finder = camera_finder(&group->loaded->scene.camera);
-  for (int e = 0; e < group->measure.n_estimators; e++) {
+  for (int e = 0; e < group->group->n_cells; e++) {
     const struct cell *cell = &experiment->cell[group->group->cell[e]];
     char *path = arena_format(&scratch, "%s/%s-cell%03d-%" PRIu64 ".csv", folder, cell->scene,
                               cell->number, i);

@@ -76,7 +76,7 @@ bool output_set_aside(const struct plan *plan, const char *directory, struct are
 
 static void write_group_log(FILE *out, const struct plan *plan, const struct group_plan *group,
                             struct moments *moments) {
-  for (int e = 0; e < group->measure.n_estimators; e++)
+  for (int e = 0; e < group->group->n_cells; e++)
     for (int p = 0; p < group->n_probes; p++) {
       uint64_t n = group->cell->iterations;
       struct moments *at = moments + plan_series(group, e, p);
@@ -86,8 +86,9 @@ static void write_group_log(FILE *out, const struct plan *plan, const struct gro
                               .iteration = at,
                               .n_checkpoints = group->n_checkpoints,
                               .checkpoint = group->checkpoint,
-                              .average = at + n,
-                              .radius2 = group->local ? at + n + group->n_checkpoints : NULL};
+                              .average = at + group->average_at};
+      if (group->radius_at) series.radius2 = at + group->radius_at;
+      if (group->companion[e]) series.richardson = at + group->richardson_at;
       log_write_series(out, &plan->experiment->cell[series.cell], &series);
     }
 }
@@ -100,7 +101,7 @@ static bool write_images(const struct outputs *outputs, const struct group_plan 
   if (!group->n_images) return true;
   char *folder = path_of(outputs->directory, "images", &scratch);
   if (!file_make_directory(folder, problem)) return false;
-  for (int e = 0; e < group->measure.n_estimators; e++)
+  for (int e = 0; e < group->group->n_cells; e++)
     for (int m = 0; m < group->n_images; m++) {
       struct arena own = scratch;
       const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];

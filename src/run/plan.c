@@ -184,38 +184,57 @@ static bool check_probes_hit(const struct group_plan *plan, struct arena scratch
 static bool plan_estimators(struct group_plan *plan, const struct experiment *experiment,
                             struct arena *arena, struct problem *problem) {
   struct measurement *measure = &plan->measure;
-  measure->n_estimators = plan->group->n_cells;
-  struct estimator *estimator = arena_new(arena, struct estimator, measure->n_estimators);
-  for (int e = 0; e < measure->n_estimators; e++) {
-    const struct cell *cell = &experiment->cell[plan->group->cell[e]];
-    if (!plan_estimator(cell, &plan->loaded->scene, &estimator[e], problem)) return false;
+  int n_cells = plan->group->n_cells, n = n_cells;
+  struct estimator *estimator = arena_new(arena, struct estimator, 2 * (ptrdiff_t)n_cells);
+  plan->companion = arena_new(arena, int, n_cells);
+  for (int e = 0; e < n_cells; e++) {
+    struct cell cell = experiment->cell[plan->group->cell[e]];
+    if (!plan_estimator(&cell, &plan->loaded->scene, &estimator[e], problem)) return false;
+    if (!cell_has_companion(&cell)) continue;
+    cell.radius *= 0.5;
+    plan->companion[e] = n;
+    if (!plan_estimator(&cell, &plan->loaded->scene, &estimator[n++], problem)) return false;
   }
   measure->estimator = estimator;
+  measure->n_estimators = n;
   return true;
+}
+
+// Where the parts of a series begin, and how long it is.
+static void plan_series_layout(struct group_plan *plan) {
+  long n = (long)plan->cell->iterations;
+  plan->average_at = n;
+  plan->series_width = n + plan->n_checkpoints;
+  if (plan->cell->integrator->local) {
+    plan->radius_at = plan->series_width;
+    plan->series_width += n;
+  }
+  if (plan->measure.n_estimators > plan->group->n_cells) {
+    plan->richardson_at = plan->series_width;
+    plan->series_width += n;
+  }
 }
 
 static void plan_layout(struct group_plan *plan, struct arena *arena) {
   const struct measurement *measure = &plan->measure;
-  plan->checkpoint = plan_checkpoints(plan->cell->iterations, &plan->n_checkpoints, arena);
-  plan->local = plan->cell->integrator->local != NULL;
-  plan->series_width = (long)plan->cell->iterations * (plan->local ? 2 : 1) + plan->n_checkpoints;
+  const struct cell *cell = plan->cell;
+  plan->checkpoint = plan_checkpoints(cell->iterations, &plan->n_checkpoints, arena);
+  plan_series_layout(plan);
   long image = (long)measure->n_points * measure->features.n_channels;
   plan->width =
-      measure->n_estimators * (plan->n_probes * plan->series_width + plan->n_images * image);
-  const struct cell *cell = plan->cell;
+      plan->group->n_cells * (plan->n_probes * plan->series_width + plan->n_images * image);
   bool last = cell->n_images && cell->image[cell->n_images - 1] == cell->iterations;
   plan->n_times = cell->n_images + !last;
-  plan->n_blocks = (plan->cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
+  plan->n_blocks = (cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
 }
 
-long plan_series(const struct group_plan *plan, int estimator, int probe) {
-  return ((long)estimator * plan->n_probes + probe) * plan->series_width;
+long plan_series(const struct group_plan *plan, int cell, int probe) {
+  return ((long)cell * plan->n_probes + probe) * plan->series_width;
 }
 
-long plan_image(const struct group_plan *plan, int estimator, int image) {
+long plan_image(const struct group_plan *plan, int cell, int image) {
   long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
-  return plan_series(plan, plan->measure.n_estimators, 0) +
-         ((long)estimator * plan->n_images + image) * size;
+  return plan_series(plan, plan->group->n_cells, 0) + ((long)cell * plan->n_images + image) * size;
 }
 
 uint64_t plan_time_at(const struct group_plan *plan, int t) {

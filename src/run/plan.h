@@ -23,10 +23,11 @@ struct loaded_scene {
   struct bvh *bvh;
 };
 
-// One run of a group yields a vector of `width` numbers: for each estimator, for each probe,
-// `iterations` luminances, the running averages at the checkpoints and, of local statistics,
-// `iterations` squared radii; then for each estimator, for each kept image, n_points * n_channels
-// values: running averages, then those of iterations alone.
+// One run of a group yields a vector of `width` numbers: for each cell, for each probe a series of
+// `iterations` luminances, the running averages at the checkpoints and, where there are any,
+// `iterations` squared radii of local statistics and `iterations` biases by Richardson; then for
+// each cell, for each kept image, n_points * n_channels values: running averages, then those of
+// iterations alone. The measurement's estimators are the cells, then their companions.
 struct group_plan {
   int number;
   const struct group *group;
@@ -38,9 +39,12 @@ struct group_plan {
   int *probe_point; // where each probe is among the measured points
   int n_checkpoints;
   uint64_t *checkpoint;
-  int n_images; // kept: averages, then single iterations; if any, the whole film is measured
-  bool local;   // squared radii are kept
-  int n_times;  // at how many iterations the time is taken: of images, and the last
+  int n_images;       // kept: averages, then single iterations; if any, the whole film is measured
+  int *companion;     // [n_cells] the estimator of half the radius; 0: none
+  long average_at;    // parts of a series: running averages,
+  long radius_at;     // squared radii; 0: none
+  long richardson_at; // biases; 0: none
+  int n_times;        // at how many iterations the time is taken: of images, and the last
   long series_width, width;
   uint64_t n_blocks;
   uint64_t fingerprint; // of all that determines the numbers
@@ -70,8 +74,8 @@ bool plan_estimator(const struct cell *, const struct scene *, struct estimator 
                     struct problem *);
 
 // Offsets into the vector.
-long plan_series(const struct group_plan *, int estimator, int probe);
-long plan_image(const struct group_plan *, int estimator, int image);
+long plan_series(const struct group_plan *, int cell, int probe); // cell: in the group
+long plan_image(const struct group_plan *, int cell, int image);
 
 // The iteration after which time t of n_times is taken.
 uint64_t plan_time_at(const struct group_plan *, int t);

@@ -119,8 +119,7 @@ static bool refine(struct reference *reference, const char *path, const struct r
 }
 
 static bool is_sampled(const struct cell *cell) {
-  return strcmp(cell->reference_integrator, "none") != 0 &&
-         strcmp(cell->reference_integrator, "analytic") != 0;
+  return integrator_find(cell->reference_integrator) != NULL;
 }
 
 bool reference_make(const struct group_plan *plan, const struct cell *cell,

@@ -35,6 +35,8 @@ static void single_images_are_what_averages_are_made_of(void **state) {
 
 #define PPM BEAM "integrator: ppm\nalpha: [0.5, 0.8]\nquantity: none\n"
 
+#define PAIR BEAM "kernel: cone\nseed: 7\nparts: [{radius: [0.5, 0.25]}]\n"
+
 // A global law: r_i^2 = r_1^2 rho_i in every run.
 static void the_radius_of_a_global_law_is_the_laws(void **state) {
   (void)state;
@@ -59,6 +61,23 @@ static void the_second_radius_of_local_statistics_is_theorys(void **state) {
     assert_true(r2[2].m2 > 0); // now they fluctuate
     assert_true(r2[3].mean < r2[2].mean && r2[2].mean < r2[1].mean);
   }
+}
+
+// In every iteration 4/3 of what half the radius takes away; what else is measured stays, to the
+// bit.
+static void richardson_compares_with_half_the_radius(void **state) {
+  (void)state;
+  struct results plain = run("plain", PAIR);
+  struct results results = run("richardson", PAIR "reference: richardson\n");
+  for (int i = 0; i < 4; i++) {
+    double whole = plain.series[0].iteration[i].mean, half = plain.series[1].iteration[i].mean;
+    assert_true(fabs(results.series[0].richardson[i].mean - 4.0 / 3 * (whole - half)) < 1e-15);
+    assert_true(results.series[0].richardson[i].m2 > 0);
+    for (int c = 0; c < 2; c++)
+      assert_memory_equal(&results.series[c].iteration[i], &plain.series[c].iteration[i],
+                          sizeof(struct moments));
+  }
+  assert_null(plain.series[0].richardson);
 }
 
 struct disc_row {
@@ -123,12 +142,15 @@ static void times_ascend_with_the_images(void **state) {
   assert_true(*at == 0 && cpu > 0);
 }
 
-static void discs_need_points_with_radii_and_iterations(void **state) {
+static void what_cannot_be_kept_is_refused(void **state) {
   (void)state;
   static const char *const row[][2] = {
       {BEAM "discs: [1]\n", "discs: the points of integrator probabilistic have no radii"},
       {BEAM "integrator: ppm\ndiscs: [1, 5]\n", "discs: 5 is beyond the 4 iterations"},
       {BEAM "single-images: [5]\n", "single-images: 5 is beyond the 4 iterations"},
+      {BEAM "integrator: ppm\nreference: richardson\n",
+       "reference: richardson needs photons and radii that no photon changes (ppm, law hachisuka)"},
+      {BEAM "integrator: path\nreference: richardson\n", "reference: richardson needs photons"},
       {BEAM "single-images: [2, 1]\n", "single-images: 1 does not ascend"},
   };
   for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
@@ -145,9 +167,10 @@ int main(void) {
       cmocka_unit_test(single_images_are_what_averages_are_made_of),
       cmocka_unit_test(the_radius_of_a_global_law_is_the_laws),
       cmocka_unit_test(the_second_radius_of_local_statistics_is_theorys),
+      cmocka_unit_test(richardson_compares_with_half_the_radius),
       cmocka_unit_test(a_disc_is_drawn_where_its_point_is_seen),
       cmocka_unit_test(times_ascend_with_the_images),
-      cmocka_unit_test(discs_need_points_with_radii_and_iterations),
+      cmocka_unit_test(what_cannot_be_kept_is_refused),
   };
   return cmocka_run_group_tests_name("run_kept", tests, make_folder, remove_folder);
 }
