@@ -115,7 +115,7 @@ void fit_bias_points(const struct series *series, const struct prediction *theor
     if (bin.first >= row->first) single->predicted = bin.bias / count(bin);
 
     struct fit_point *average = new_point(fit, row, CURVE_AVERAGE, all);
-    average->measured = series->average[c].mean - theory->truth;
+    average->measured = all.difference / count(all);
     set_t_interval(average, all, series->average[c].n, theory->truth_se, v->dof);
     average->predicted = all.bias / count(all);
   }

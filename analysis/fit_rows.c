@@ -108,6 +108,42 @@ static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
     add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, v->dof);
 }
 
+// The rate's own variance where it is known well, else theory's.
+static const double *weights_of(const struct variance_fit *v) {
+  return v->rate_se <= largest_rate_se ? v->variance : v->expected;
+}
+
+static void fit_bias_series(const struct results *results, const struct series *series,
+                            const struct prediction *theory, const struct variance_fit *v,
+                            double dependence, struct arena scratch, struct fit *fit) {
+  struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
+  struct bias_fit b = {0};
+  if (!v->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
+  row->why = v->why || isfinite(theory->truth) ? v->why : "no reference";
+  bias_row(&b, v, theory, row);
+  if (theory->independent && b.measured) {
+    add_deviate(row, "independence", dependence); // its standard errors rest on it
+    if (b.lack_of_fit.dof >= 1)
+      add_test(row, "lack-of-fit", b.lack_of_fit.value,
+               special_f_upper(b.lack_of_fit.value, b.lack_of_fit.dof, v->dof));
+  }
+  fit_bias_points(series, theory, v, &b, row, fit);
+}
+
+// Against the same photons at half the radius: the differences of the iterations are a series of
+// their own, with a variance of the usual shape.
+static void fit_richardson(const struct results *results, const struct series *series,
+                           const struct prediction *theory, double dependence, struct arena scratch,
+                           struct fit *fit) {
+  struct series difference = *series;
+  difference.iteration = series->richardson;
+  struct prediction shape = prediction_from_reference(0, 0, theory->d, &theory->family, &scratch);
+  struct prediction bias = prediction_of_richardson(theory);
+  shape.first = theory->first;
+  struct variance_fit v = fit_variance(&shape, series->richardson, &scratch);
+  fit_bias_series(results, &difference, &bias, &v, dependence, scratch, fit);
+}
+
 void fit_series(const struct results *results, const struct series *series,
                 const struct prediction *theory, struct arena scratch, struct fit *fit) {
   const struct cell *cell = &results->experiment.cell[series->cell];
@@ -123,19 +159,9 @@ void fit_series(const struct results *results, const struct series *series,
                special_chi2_upper(v.lack_of_fit.value, v.lack_of_fit.dof));
     fit_variance_points(series, &v, row, fit);
   }
-  if (cell->quantities & QUANTITY_BIAS) {
-    struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
-    struct bias_fit b = {0};
-    const double *weights = v.rate_se <= largest_rate_se ? v.variance : v.expected;
-    if (!v.why) b = fit_bias(theory, series->iteration, &v, weights, &scratch);
-    row->why = v.why || isfinite(theory->truth) ? v.why : "no reference";
-    bias_row(&b, &v, theory, row);
-    if (theory->independent && b.measured) {
-      add_deviate(row, "independence", dependence); // its standard errors rest on it
-      if (b.lack_of_fit.dof >= 1)
-        add_test(row, "lack-of-fit", b.lack_of_fit.value,
-                 special_f_upper(b.lack_of_fit.value, b.lack_of_fit.dof, v.dof));
-    }
-    fit_bias_points(series, theory, &v, &b, row, fit);
-  }
+  if (!(cell->quantities & QUANTITY_BIAS)) return;
+  if (series->richardson)
+    fit_richardson(results, series, theory, dependence, scratch, fit);
+  else
+    fit_bias_series(results, series, theory, &v, dependence, scratch, fit);
 }

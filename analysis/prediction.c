@@ -27,16 +27,18 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   double *rest = arena_new(arena, double, (ptrdiff_t)n);
   double *bias = arena_new(arena, double, (ptrdiff_t)n);
   double *kurtosis = arena_new(arena, double, (ptrdiff_t)n);
+  double *richardson = arena_new(arena, double, (ptrdiff_t)n);
   for (uint64_t j = 0; j < n; j++) {
     double r = radius * sqrt(family->rho[j]), moment[PROFILE_MOMENTS];
     for (int k = 0; k < PROFILE_MOMENTS; k++) moment[k] = profile_moment(profile, k + 1, r);
     divergent[j] = moment[1] / photons;
     rest[j] = -moment[0] * moment[0] / photons;
     bias[j] = profile_bias(profile, r);
+    richardson[j] = 4.0 / 3 * (bias[j] - profile_bias(profile, r / 2));
     kurtosis[j] = excess_kurtosis(moment, photons);
   }
   bool unbiased = is_zero_bias(bias, n, profile->exact);
-  for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = family->rho[j];
+  for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = richardson[j] = family->rho[j];
   return (struct prediction){
       .d = 2,
       .n = n,
@@ -51,7 +53,17 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
       .rest = rest,
       .bias = bias,
       .kurtosis = kurtosis,
+      .richardson = richardson,
   };
+}
+
+struct prediction prediction_of_richardson(const struct prediction *theory) {
+  struct prediction p = *theory;
+  p.truth = p.truth_se = 0;
+  if (!theory->closed_form) return p;
+  p.bias = theory->richardson;
+  if (!p.unbiased) p.bias_coefficient = p.bias[0];
+  return p;
 }
 
 // Powers of rho: variance d^0, rho^(2/d - 1) and 1/rho; bias rho^(2/d) and rho^(4/d).

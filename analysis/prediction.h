@@ -30,6 +30,7 @@ struct prediction {
   double bias_coefficient;     // b_1: the first iteration's bias; or NAN
   const double *divergent, *rest, *bias, *bias2; // [n]; rest, bias2 NULL where there is one term
   const double *kurtosis;                        // [n], excess, of one value; NULL if unknown
+  const double *richardson; // [n], in closed form: 4/3 of what half the radius takes off `bias`
 };
 
 // `scene` is only asked for a closed form. The family must outlive the prediction.
@@ -40,6 +41,8 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
 // The same from a profile of the irradiance that is already known; tests use it.
 struct prediction prediction_from_profile(const struct profile *, double radius, double photons,
                                           double emitted, const struct family *, struct arena *);
+// What Richardson's estimate of the bias shows, where that is known; its variance is not.
+struct prediction prediction_of_richardson(const struct prediction *);
 // ... and where nothing but the exponents is known.
 struct prediction prediction_from_reference(double reference, double reference_se, int d,
                                             const struct family *, struct arena *);
