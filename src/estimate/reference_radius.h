@@ -10,7 +10,7 @@ struct radii;
 
 struct reference_radius {
   const char *name, *about, *source;
-  bool global;        // the same at all points
+  bool global;        // 1 at all points: radii are in scene units
   bool nearest;       // takes k
   bool differentials; // eye paths carry them
   // Of a point, scene units. Where it is 0 or infinite the point has no disc and its estimate is
