@@ -244,15 +244,31 @@ validate: $(binary)
 	$(binary) validate
 
 # ---- experiments ----
-# make experiment-NAME runs experiments/NAME.yaml, fits and plots it into results/NAME.
+# make experiment-NAME runs experiments/NAME.yaml, fits and plots it into results/NAME. One that has to be
+# run in another way says how in experiments/NAME.sh PHOTONLAB RESULTS QUALITY.
 experiments := $(patsubst experiments/%.yaml,experiment-%,$(sort $(wildcard experiments/*.yaml)))
 RESULTS = results/$*
 
-.PHONY: $(experiments)
+define run_fit_plot
+$(binary) run experiments/$*.yaml -o $(RESULTS) --quality $(QUALITY)
+$(binary) fit $(RESULTS)
+$(binary) plot $(RESULTS)
+endef
+
+.PHONY: $(experiments) paper-figures
 $(experiments): experiment-%: $(binary)
-	$(binary) run experiments/$*.yaml -o $(RESULTS) --quality $(QUALITY)
-	$(binary) fit $(RESULTS)
-	$(binary) plot $(RESULTS)
+	$(if $(wildcard experiments/$*.sh),experiments/$*.sh $(binary) $(RESULTS) $(QUALITY),$(run_fit_plot))
+
+# One after the other, each by all threads; those after one that fails are still made.
+figures_of = $(if $(filter command,$(origin RESULTS)),$(RESULTS),results)
+paper-figures: $(binary)
+	@made= failed=; \
+	for name in $(experiments:experiment-%=%); do \
+	  if $(MAKE) experiment-$$name RESULTS=$(figures_of)/$$name; \
+	  then made="$$made $(figures_of)/$$name/figures/*.pdf"; else failed="$$failed $$name"; fi; \
+	done; \
+	[ -z "$$made" ] || ls -1 $$made; \
+	[ -z "$$failed" ] || { echo "photonlab: failed:$$failed" >&2; exit 1; }
 
 experiment-%:
 	@echo 'photonlab: there is no experiments/$*.yaml; there are: $(experiments)' >&2; exit 1
@@ -294,6 +310,7 @@ help:
 	@echo 'make validate          the built-in checks against closed forms'
 	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
 	@for name in $(experiments); do echo "                         $$name"; done
+	@echo 'make paper-figures     all of them, one after the other; says where each figure is'
 	@echo 'make install           PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall | dist | clean'
 	@echo
