@@ -59,7 +59,7 @@ static void withdraw_rate(struct fit_row *row) {
 
 static void judge(struct fit *fit) {
   int n_tests = 0;
-  for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests;
+  for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests * fit->row[r].looks;
   fit->level = family_wise_level;
   fit->test_level = n_tests ? -expm1(log1p(-fit->level) / n_tests) : fit->level;
   for (int r = 0; r < fit->n_rows; r++) {
@@ -185,4 +185,17 @@ bool fit_results(const struct results *results, struct arena *arena, struct fit 
   }
   fit_predicted(results, prediction, arena, fit);
   return true;
+}
+
+double fit_largest_rate_se(const struct results *results, struct arena scratch,
+                           struct problem *problem) {
+  struct fit fit;
+  double largest = 0;
+  if (!fit_results(results, &scratch, &fit, problem)) return INFINITY;
+  for (int r = 0; r < fit.n_rows; r++) {
+    const struct fit_row *row = &fit.row[r];
+    bool asked = !isnan(row->rate_theory) && row->why != fit_no_reference;
+    if (asked) largest = fmax(largest, isnan(row->rate_se) ? INFINITY : row->rate_se);
+  }
+  return largest;
 }

@@ -42,6 +42,7 @@ struct fit_row {
   double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, 95 %
   struct fit_test test[FIT_TESTS];
   int n_tests;
+  int looks; // at the runs, each of which could have been the last
   bool resolved, detected;
   enum verdict verdict;
   const char *why; // there is no fit; or NULL
@@ -76,6 +77,9 @@ bool fit_results(const struct results *, struct arena *, struct fit *, struct pr
 
 // The same with predictions in hand, one per series (in results' order).
 void fit_predicted(const struct results *, const struct prediction *, struct arena *, struct fit *);
+
+// The largest standard error of the rates that theory says there are (run_options).
+double fit_largest_rate_se(const struct results *, struct arena scratch, struct problem *);
 
 bool fit_write_json(const struct fit *, const char *path, struct problem *);
 bool fit_write_curves(const struct fit *, const char *path, struct problem *);

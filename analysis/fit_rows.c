@@ -5,6 +5,7 @@
 #include <float.h>
 #include <math.h>
 
+const char fit_no_reference[] = "no reference";
 static const double largest_rate_se = 0.1, widest_interval = 0.3;
 
 static void add_test(struct fit_row *row, const char *name, double statistic, double p) {
@@ -34,6 +35,7 @@ static struct fit_row *new_row(const struct results *results, const struct serie
       .cell = &results->experiment.cell[series->cell],
       .probe = &results->probe[series->cell][series->probe],
       .quantity = quantity,
+      .looks = results->looks ? results->looks[series->cell] : 1,
       .closed_form = theory->closed_form,
       .first = theory->first + 1,
       .rate_theory = NAN,
@@ -119,7 +121,7 @@ static void fit_bias_series(const struct results *results, const struct series *
   struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
   struct bias_fit b = {0};
   if (!v->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
-  row->why = v->why || isfinite(theory->truth) ? v->why : "no reference";
+  row->why = v->why || isfinite(theory->truth) ? v->why : fit_no_reference;
   bias_row(&b, v, theory, row);
   if (theory->independent && b.measured) {
     add_deviate(row, "independence", dependence); // its standard errors rest on it

@@ -8,6 +8,8 @@
 // an interval of 0.3.
 static const double fit_detection_snr = 3;
 
+extern const char fit_no_reference[]; // why a bias has no fit
+
 // Appends the series' rows and points to the fit, which has room for them.
 void fit_series(const struct results *, const struct series *, const struct prediction *,
                 struct arena scratch, struct fit *);

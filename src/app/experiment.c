@@ -23,6 +23,7 @@ static int run(struct cli *cli, struct problem *problem) {
     if (!cli_apply(cli, &experiment.cell[c], problem)) return 1;
   const char *directory =
       cli->output ? cli->output : arena_format(cli->arena, "results/%s", experiment.name);
+  cli->options.largest_rate_se = fit_largest_rate_se;
   switch (run_experiment(&experiment, directory, cli->options, cli->arena, problem)) {
   case RUN_DONE:
     printf("%s\n", directory);

@@ -34,6 +34,7 @@ struct cell {
   int k;                   // nearest photons, of knn or of photonmap; 0: none
   uint64_t photons;        // emitted per iteration, >= 1
   uint64_t iterations, runs; // N >= 1, K >= 1
+  double until_se;         // of every rate that is asked for: then no more runs; 0: all runs
   uint64_t seed;
   struct pixel *probe;     // NULL: default, a fixed 3x3 grid of pixels
   int n_probes;            // 0: default

@@ -91,6 +91,19 @@ bool key_read_runs(struct reading *reading, const struct node *node, struct cell
   return value_count(reading, node, 1, most_runs, &cell->runs);
 }
 
+// "rate_se <= 0.004".
+bool key_read_until(struct reading *reading, const struct node *node, struct cell *cell) {
+  static const char condition[] = "rate_se <=";
+  const char *text = value_text(reading, node, "a condition as \"rate_se <= 0.004\"");
+  if (!text) return false;
+  if (strncmp(text, condition, sizeof condition - 1) != 0)
+    return value_complain(reading, node, "is not a condition as \"rate_se <= 0.004\"");
+  struct node number = *node;
+  number.text = text + sizeof condition - 1 + strspn(text + sizeof condition - 1, " ");
+  if (!value_number(reading, &number, &cell->until_se)) return false;
+  return cell->until_se > 0 || value_complain(reading, node, "is never reached");
+}
+
 bool key_read_hit_points(struct reading *reading, const struct node *node, struct cell *cell) {
   return value_count(reading, node, 1, INT_MAX, &cell->hit_points);
 }

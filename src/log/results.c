@@ -232,6 +232,8 @@ struct manifest {
   const char *name, *quality;
   int n_cells;
   uint64_t *scene_hash, *seed; // by cell; the command line may have set the seed
+  uint64_t *runs;              // by cell: those made
+  int *looks;                  // by cell
   uint64_t log_sum, probes_sum;
 };
 
@@ -253,12 +255,18 @@ static bool take_manifest(json_t *root, struct arena *arena, struct manifest *ma
       .n_cells = n,
       .scene_hash = arena_new(arena, uint64_t, n),
       .seed = arena_new(arena, uint64_t, n),
+      .runs = arena_new(arena, uint64_t, n),
+      .looks = arena_new(arena, int, n),
   };
   for (int c = 0; c < n; c++) {
     json_t *cell = json_array_get(cells, (size_t)c);
     if (!read_hex(cell, "scene_hash", &manifest->scene_hash[c]) ||
         !read_hex(cell, "seed", &manifest->seed[c]))
       return false;
+    json_t *runs = json_object_get(cell, "runs"), *looks = json_object_get(cell, "looks");
+    if (json_integer_value(runs) < 1 || json_integer_value(looks) < 1) return false;
+    manifest->runs[c] = (uint64_t)json_integer_value(runs);
+    manifest->looks[c] = (int)json_integer_value(looks);
   }
   return read_hex(root, "log_hash", &manifest->log_sum) &&
          read_hex(root, "probes_hash", &manifest->probes_sum);
@@ -289,7 +297,10 @@ static bool read_experiment(const char *directory, const struct manifest *manife
   if (experiment->n_cells != manifest->n_cells)
     return problem_set(problem, "%s: has %d cells, %d were run; it must not be edited", path,
                        experiment->n_cells, manifest->n_cells);
-  for (int c = 0; c < experiment->n_cells; c++) experiment->cell[c].seed = manifest->seed[c];
+  for (int c = 0; c < experiment->n_cells; c++) {
+    experiment->cell[c].seed = manifest->seed[c];
+    experiment->cell[c].runs = manifest->runs[c];
+  }
   return true;
 }
 
@@ -301,6 +312,7 @@ bool results_read(const char *directory, struct arena *arena, struct results *re
       !read_experiment(directory, &manifest, arena, &results->experiment, problem))
     return false;
   results->scene_hash = manifest.scene_hash;
+  results->looks = manifest.looks;
   return read_probes(arena_format(arena, "%s/probes.csv", directory), manifest.probes_sum, arena,
                      results, problem) &&
          read_log(arena_format(arena, "%s/log.csv", directory), manifest.log_sum, arena, results,

@@ -37,6 +37,7 @@ struct results {
   const char *directory;
   struct experiment experiment;
   uint64_t *scene_hash;  // by cell
+  int *looks;            // by cell: at how many numbers of runs it was decided to make more
   struct probe **probe;  // by cell: [n_probes of the cell]
   int *n_probes;         // by cell
   struct series *series; // by cell, then probe

@@ -114,7 +114,7 @@ static void run_once(const struct group_plan *plan, void *state, uint64_t run, d
 }
 
 int block_runs(const struct group_plan *plan, uint64_t block) {
-  uint64_t left = plan->cell->runs - block * RUNS_PER_BLOCK;
+  uint64_t left = plan->runs - block * RUNS_PER_BLOCK;
   return left < RUNS_PER_BLOCK ? (int)left : RUNS_PER_BLOCK;
 }
 

@@ -7,6 +7,7 @@
 #include "run/block.h"
 #include "run/discs.h"
 #include "run/picture.h"
+#include "run/series.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -78,17 +79,7 @@ static void write_group_log(FILE *out, const struct plan *plan, const struct gro
                             struct moments *moments) {
   for (int e = 0; e < group->group->n_cells; e++)
     for (int p = 0; p < group->n_probes; p++) {
-      uint64_t n = group->cell->iterations;
-      struct moments *at = moments + plan_series(group, e, p);
-      struct series series = {.cell = group->group->cell[e],
-                              .probe = p,
-                              .n_iterations = n,
-                              .iteration = at,
-                              .n_checkpoints = group->n_checkpoints,
-                              .checkpoint = group->checkpoint,
-                              .average = at + group->average_at};
-      if (group->radius_at) series.radius2 = at + group->radius_at;
-      if (group->companion[e]) series.richardson = at + group->richardson_at;
+      struct series series = series_of(group, e, p, moments);
       log_write_series(out, &plan->experiment->cell[series.cell], &series);
     }
 }
@@ -214,6 +205,13 @@ static json_t *hex(uint64_t value) {
   return json_string(text);
 }
 
+static int looks_at(const struct plan *plan, int cell) {
+  for (int g = 0; g < plan->n_groups; g++)
+    for (int c = 0; c < plan->group[g].group->n_cells; c++)
+      if (plan->group[g].group->cell[c] == cell) return plan->group[g].looks;
+  return 1;
+}
+
 static json_t *manifest_cell(const struct plan *plan, const struct cell *cell) {
   uint64_t hash = 0;
   for (int s = 0; s < plan->n_scenes; s++)
@@ -223,6 +221,7 @@ static json_t *manifest_cell(const struct plan *plan, const struct cell *cell) {
   json_object_set_new(out, "scene_path", json_string(cell->scene_path));
   json_object_set_new(out, "scene_hash", hex(hash));
   json_object_set_new(out, "reference", json_string(cell->reference_integrator));
+  json_object_set_new(out, "looks", json_integer(looks_at(plan, cell->number)));
   return out;
 }
 

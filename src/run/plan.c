@@ -4,6 +4,7 @@
 #include "base/version.h"
 #include "density/grid.h"
 #include "numeric/elementary.h"
+#include "run/look.h"
 #include "walk/eye.h"
 
 #include <inttypes.h>
@@ -225,7 +226,6 @@ static void plan_layout(struct group_plan *plan, struct arena *arena) {
       plan->group->n_cells * (plan->n_probes * plan->series_width + plan->n_images * image);
   bool last = cell->n_images && cell->image[cell->n_images - 1] == cell->iterations;
   plan->n_times = cell->n_images + !last;
-  plan->n_blocks = (cell->runs + RUNS_PER_BLOCK - 1) / RUNS_PER_BLOCK;
 }
 
 long plan_series(const struct group_plan *plan, int cell, int probe) {
@@ -303,6 +303,7 @@ bool plan_make(const struct experiment *experiment, struct run_options options, 
     if (!plan_group(plan, &group[g], &plan->group[g], arena, problem)) return false;
   }
   plan_fingerprint(plan, *arena);
+  look_begin(plan);
   return true;
 }
 

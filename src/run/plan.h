@@ -13,6 +13,9 @@ struct run_options {
   bool quiet;
   unsigned skip_off; // bits of enum skip
   bool lenient;      // of scene_options
+  // The largest standard error of the rates asked for; infinite: some is not known. A problem: it
+  // cannot be said. NULL where no cell has `until`.
+  double (*largest_rate_se)(const struct results *, struct arena scratch, struct problem *);
 };
 
 int plan_threads(const struct run_options *);
@@ -46,6 +49,9 @@ struct group_plan {
   long richardson_at; // biases; 0: none
   int n_times;        // at how many iterations the time is taken: of images, and the last
   long series_width, width;
+  uint64_t runs; // that are made: all of the cell, or so many until now (look.h)
+  int looks;     // at what they say, the last included
+  bool enough;   // the last look said so
   uint64_t n_blocks;
   uint64_t fingerprint; // of all that determines the numbers
 };

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "run/block.h"
 #include "run/interrupt.h"
+#include "run/look.h"
 #include "run/output.h"
 #include "run/progress.h"
 #include "run/reference.h"
@@ -63,7 +64,7 @@ static void add_missing(const struct plan *plan, int g, const char *folder, stru
   }
   if (units->count == first) return;
   double run_s = measure_run_s(group, *arena);
-  units->total_s += run_s * (double)group->cell->runs;
+  units->total_s += run_s * (double)group->runs;
   for (ptrdiff_t k = first; k < units->count; k++) {
     units->item[k].work = run_s * block_runs(group, units->item[k].block);
     units->left_s += units->item[k].work;
@@ -173,6 +174,18 @@ static bool make_blocks(const struct plan *plan, const struct units *units, cons
   return !interrupt_signal();
 }
 
+// Blocks until every group has its runs: at once, or look by look. False without a problem:
+// interrupted.
+static bool make_runs(struct plan *plan, struct units units, struct probe *const *probe,
+                      const char *folder, struct arena scratch, struct problem *problem) {
+  for (;;) {
+    struct arena own = scratch;
+    if (!make_blocks(plan, &units, folder)) return false;
+    if (!look_again(plan, probe, folder, scratch, problem)) return !problem->text[0];
+    units = units_left(plan, folder, &own);
+  }
+}
+
 enum run_outcome run_experiment(const struct experiment *experiment, const char *path,
                                 struct run_options options, struct arena *arena,
                                 struct problem *problem) {
@@ -194,7 +207,9 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
   struct probe **probe = arena_new(arena, struct probe *, experiment->n_cells);
   if (!probes_make(&plan, directory, probe, arena, problem))
     return problem->text[0] ? RUN_FAILED : interrupted(directory);
-  if (!make_blocks(&plan, &units, folder)) return interrupted(directory);
+  if (!make_runs(&plan, units, probe, folder, *arena, problem))
+    return problem->text[0] ? RUN_FAILED : interrupted(directory);
+  look_end(&plan, arena);
   struct outputs outputs = {&plan, probe, directory};
   return output_write(&outputs, *arena, problem) ? RUN_DONE : RUN_FAILED;
 }

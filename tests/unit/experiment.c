@@ -399,11 +399,12 @@ static void cells_that_differ_only_in_the_estimator_share_a_photon_pass(void **s
 static void every_key_that_changes_the_paths_splits_the_group(void **state) {
   (void)state;
   static const char *const row[] = {
-      ("scene: " ANOTHER), "photons: 7",       "depth: 3",
-      "direct: nee",       "seed: other",      "runs: 7",
-      "iterations: 7",     "probes: [[3, 4]]", "probes: [[1, 2], [3, 4]]",
-      "images: [3]",       "single-images: 3", "pixel: footprint",
-      "integrator: path",  "view: direct",     "hit-points: 3",
+      ("scene: " ANOTHER),     "photons: 7",       "depth: 3",
+      "direct: nee",           "seed: other",      "runs: 7",
+      "iterations: 7",         "probes: [[3, 4]]", "probes: [[1, 2], [3, 4]]",
+      "until: rate_se <= 0.1", "images: [3]",      "single-images: 3",
+      "pixel: footprint",      "integrator: path", "view: direct",
+      "hit-points: 3",
   };
   static const char *const shared[] = {"quantity: bias", "reference: none", "alpha: 0.1",
                                        "radius: 3"};
@@ -443,7 +444,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 26);
+  assert_int_equal(n_experiment_keys, 27);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);
