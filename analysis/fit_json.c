@@ -1,5 +1,5 @@
 // fit.json and curves.csv.
-#include "analysis/fit.h"
+#include "analysis/fit_rows.h"
 
 #include "base/file.h"
 #include "experiment/cell_keys.h"
@@ -107,13 +107,17 @@ static void print_field(FILE *stream, const char *text) {
   fputs("\",", stream);
 }
 
+void fit_print_keys(FILE *stream, const struct cell *cell) {
+  char buffer[CELL_KEY_SIZE];
+  for (int k = 0; k < CELL_KEYS; k++) print_field(stream, cell_keys[k].text(cell, 17, buffer));
+}
+
 static void print_point(FILE *stream, const struct fit_point *point) {
   const struct fit_row *row = point->row;
   // A curve that was fitted, not predicted, to a bias that was not found would only show noise.
   bool known = row->quantity == QUANTITY_VARIANCE || isfinite(row->coefficient_theory) ||
                row->verdict == VERDICT_AGREE || row->verdict == VERDICT_DISAGREE;
-  char buffer[CELL_KEY_SIZE];
-  for (int k = 0; k < CELL_KEYS; k++) print_field(stream, cell_keys[k].text(row->cell, 17, buffer));
+  fit_print_keys(stream, row->cell);
   fprintf(stream, "%d,%d,%s,%s,%llu,%llu", row->probe->x, row->probe->y,
           quantity_name(row->quantity), point->series == CURVE_AVERAGE ? "average" : "iteration",
           (unsigned long long)point->first, (unsigned long long)point->n);

@@ -14,6 +14,9 @@ extern const char fit_no_reference[]; // why a bias has no fit
 void fit_series(const struct results *, const struct series *, const struct prediction *,
                 struct arena scratch, struct fit *);
 
+// The keys of a cell as fields of a table, each with a comma after it.
+void fit_print_keys(FILE *, const struct cell *);
+
 // Points of one row (fit_points.c).
 void fit_variance_points(const struct series *, const struct variance_fit *, const struct fit_row *,
                          struct fit *);

@@ -3,8 +3,10 @@
 
 #include <assert.h>
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_randist.h>
 #include <gsl/gsl_sf_zeta.h>
 #include <math.h>
 #include <stdbool.h>
@@ -95,4 +97,37 @@ void special_gauss_legendre(int n, double *x, double *weight) {
     (void)code;
   }
   gsl_integration_glfixed_table_free(table);
+}
+
+double special_binomial(double m, double p, double trials) {
+  gsl_set_error_handler_off();
+  return gsl_ran_binomial_pdf((unsigned)m, p, (unsigned)trials);
+}
+
+// Golub and Welsch 1969: eigenvalues of the recurrence of Krawtchouk's polynomials.
+void special_gauss_binomial(int n, double p, double trials, double *m, double *weight) {
+  gsl_set_error_handler_off();
+  size_t size = (size_t)n;
+  gsl_matrix *jacobi = gsl_matrix_calloc(size, size), *vectors = gsl_matrix_alloc(size, size);
+  gsl_vector *values = gsl_vector_alloc(size);
+  gsl_eigen_symmv_workspace *workspace = gsl_eigen_symmv_alloc(size);
+  assert(jacobi && vectors && values && workspace && trials >= n);
+  for (int k = 0; k < n; k++) {
+    gsl_matrix_set(jacobi, (size_t)k, (size_t)k, p * (trials - k) + k * (1 - p));
+    if (k == 0) continue;
+    double beside = sqrt(k * p * (1 - p) * (trials - k + 1));
+    gsl_matrix_set(jacobi, (size_t)k, (size_t)k - 1, beside);
+    gsl_matrix_set(jacobi, (size_t)k - 1, (size_t)k, beside);
+  }
+  int code = gsl_eigen_symmv(jacobi, values, vectors, workspace);
+  assert(code == GSL_SUCCESS);
+  (void)code;
+  for (size_t k = 0; k < size; k++) {
+    m[k] = gsl_vector_get(values, k);
+    weight[k] = gsl_matrix_get(vectors, 0, k) * gsl_matrix_get(vectors, 0, k);
+  }
+  gsl_eigen_symmv_free(workspace);
+  gsl_vector_free(values);
+  gsl_matrix_free(vectors);
+  gsl_matrix_free(jacobi);
 }

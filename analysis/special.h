@@ -22,4 +22,8 @@ double special_zeta(int k); // k >= 2
 // n-point Gauss-Legendre on [0, 1]; n one of those GSL tables to full precision (64, 96, 100, ...).
 void special_gauss_legendre(int n, double *x, double *weight);
 
+// P(m of so many trials), each with probability p; and the n-point Gauss rule for it, n <= trials.
+double special_binomial(double m, double p, double trials);
+void special_gauss_binomial(int n, double p, double trials, double *m, double *weight);
+
 #endif

@@ -1,6 +1,6 @@
 // photonlab run, fit, plot: an experiment from its file to its figure.
 #define _GNU_SOURCE // readlink
-#include "analysis/fit.h"
+#include "analysis/fit_radii.h"
 #include "app/cli.h"
 #include "app/pixels.h"
 #include "base/file.h"
@@ -38,12 +38,16 @@ static int run(struct cli *cli, struct problem *problem) {
 static int fit(struct cli *cli, struct problem *problem) {
   struct results results;
   struct fit fit;
+  struct fit_radii radii;
   if (!results_read(cli->argument, cli->arena, &results, problem) ||
       !fit_results(&results, cli->arena, &fit, problem) ||
       !fit_write_json(&fit, arena_format(cli->arena, "%s/fit.json", cli->argument), problem) ||
-      !fit_write_curves(&fit, arena_format(cli->arena, "%s/curves.csv", cli->argument), problem))
+      !fit_write_curves(&fit, arena_format(cli->arena, "%s/curves.csv", cli->argument), problem) ||
+      !fit_radii(&results, cli->arena, &radii, problem) ||
+      !fit_radii_write(&radii, arena_format(cli->arena, "%s/radii.csv", cli->argument), problem))
     return 1;
   fit_print_table(&fit, stdout);
+  fit_radii_print(&radii, stdout);
   return 0;
 }
 
@@ -91,7 +95,8 @@ const struct command command_run = {"run", "EXPERIMENT",
                                     "output threads quiet no-skip lenient quality seed", run};
 
 const struct command command_fit = {
-    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv", "", fit};
+    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv, radii.csv", "",
+    fit};
 
 const struct command command_plot = {
     "plot", "DIR", "draws the experiment's figure from the results in DIR", "", plot};
