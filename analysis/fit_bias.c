@@ -7,15 +7,15 @@
 
 #include <math.h>
 
-// Columns of the linear part: bias t^(2/d), bias2, and 1 if the reference is uncertain. The second
-// term stays at theory's radii: it is a correction, and if it moved with the rate it could pass for
-// the first term at half the rate.
+// Columns of the linear part: the bias at the rate of the last bias_family, bias2, and 1 if the
+// reference is uncertain. The second term stays at theory's radii: it is a correction, and if it
+// moved with the rate it could pass for the first term at half the rate.
 struct model {
   const struct prediction *theory;
   const double *difference, *weight; // [n]
   int n_terms, n_columns;
   double offset_precision;
-  double *log_ratio, *slope; // scratch, [n]
+  double *shape, *slope; // [n], of bias_family
 };
 
 struct solution {
@@ -23,18 +23,15 @@ struct solution {
 };
 
 static void columns(const struct model *model, uint64_t j, double column[SOLVE_MAX]) {
-  const struct prediction *theory = model->theory;
-  double t = exp(2.0 / theory->d * model->log_ratio[j]);
   int n = 0;
-  column[n++] = theory->bias[j] * t;
-  if (model->n_terms == 2) column[n++] = theory->bias2[j];
+  column[n++] = model->shape[j];
+  if (model->n_terms == 2) column[n++] = model->theory->bias2[j];
   if (model->offset_precision > 0) column[n++] = 1;
 }
 
 // d b_i / d rate.
-static double rate_column(const struct model *model, uint64_t j, const double *column,
-                          const double *x) {
-  return x[0] * column[0] * 2.0 / model->theory->d * model->slope[j];
+static double rate_column(const struct model *model, uint64_t j, const double *x) {
+  return x[0] * model->slope[j];
 }
 
 static struct normal_equations begin(const struct model *model, int n) {
@@ -53,7 +50,7 @@ static void drop_second_term(struct normal_equations *eq) {
 }
 
 static bool solve_linear(struct model *model, double rate, struct solution *solution) {
-  family_ratio(&model->theory->family, rate, model->log_ratio, model->slope);
+  bias_family(model->theory, rate, model->shape, model->slope);
   struct normal_equations eq = begin(model, model->n_columns);
   double total = 0, column[SOLVE_MAX];
   for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
@@ -73,9 +70,9 @@ static bool solve_linear(struct model *model, double rate, struct solution *solu
 }
 
 // ---- the profile over the rate ----
-// In the variance's rate a; the bias's is (2/d)(1 - a), searched in [-1, 2].
 
-enum { SCAN = 24 };
+enum { SCAN = 24 }; // steps over the rates that are searched
+static const double least_rate = -1, largest_rate = 2;
 
 static double profile(struct model *model, double rate) {
   struct solution solution;
@@ -115,7 +112,7 @@ struct scan {
 
 static struct scan scan_rates(struct model *model) {
   struct scan scan = {.lowest = 0};
-  double lo = 1 - model->theory->d, hi = 1 + 0.5 * model->theory->d;
+  double lo = least_rate, hi = largest_rate;
   for (int k = 0; k <= SCAN; k++) {
     scan.rate[k] = lo + (hi - lo) * k / SCAN;
     scan.chi2[k] = profile(model, scan.rate[k]);
@@ -151,7 +148,7 @@ static double curvature_se(struct model *model, const struct solution *best) {
   double row[SOLVE_MAX], unused[SOLVE_MAX], covariance[SOLVE_MAX][SOLVE_MAX];
   for (uint64_t j = model->theory->first; j < model->theory->n; j++) {
     columns(model, j, row);
-    row[model->n_columns] = rate_column(model, j, row, best->x);
+    row[model->n_columns] = rate_column(model, j, best->x);
     normal_add(&eq, row, 0, model->weight[j]);
   }
   if (!normal_solve(&eq, unused, covariance)) return INFINITY;
@@ -170,13 +167,11 @@ static bool find_rate(struct model *model, const struct solution *theory, struct
   if (!interval(model, &scan, rate, best->chi2 + two_sided_95 * two_sided_95, &lo, &hi))
     return false;
   if (!solve_linear(model, rate, best)) return false;
-  double per_rate = 2.0 / model->theory->d;
-  fit->rate = per_rate * (1 - rate);
-  fit->rate_lo = per_rate * (1 - hi), fit->rate_hi = per_rate * (1 - lo);
-  fit->rate_se = per_rate * curvature_se(model, best);
+  fit->rate = rate, fit->rate_lo = lo, fit->rate_hi = hi;
+  fit->rate_se = curvature_se(model, best);
   double gain = theory->chi2 - best->chi2; // below zero by rounding only
   double deviate = gain > 0 ? sqrt(gain) : 0;
-  fit->rate_deviate = rate < model->theory->family.theory ? deviate : -deviate;
+  fit->rate_deviate = rate > bias_theory_rate(model->theory) ? deviate : -deviate;
   return true;
 }
 
@@ -195,7 +190,7 @@ static struct chi2 lack_of_fit(const struct model *model, const struct solution 
       columns(model, j, row);
       double residual = model->difference[j];
       for (int a = 0; a < model->n_terms; a++) residual -= at->x[a] * row[a];
-      if (free_rate) row[model->n_columns] = rate_column(model, j, row, at->x);
+      if (free_rate) row[model->n_columns] = rate_column(model, j, at->x);
       held += model->weight[j];
       sum += model->weight[j] * residual;
       for (int a = 0; a < parameters; a++) direction[b][a] += model->weight[j] * row[a];
@@ -206,10 +201,6 @@ static struct chi2 lack_of_fit(const struct model *model, const struct solution 
   double prior[SOLVE_MAX] = {0};
   if (model->offset_precision > 0) prior[model->n_columns - 1] = model->offset_precision;
   return bins_chi2(bins.n, deviate, direction, parameters, prior);
-}
-
-double bias_theory_rate(const struct prediction *theory) {
-  return 2.0 / theory->d * (1 - theory->family.theory);
 }
 
 static void fill_expected(const struct model *model, const struct solution *at, double *expected) {
@@ -238,14 +229,14 @@ struct bias_fit fit_bias(const struct prediction *theory, const struct moments *
       .difference = difference,
       .weight = weight,
       .n_terms = theory->bias2 ? 2 : 1,
-      .log_ratio = arena_new(arena, double, n),
+      .shape = arena_new(arena, double, n),
       .slope = arena_new(arena, double, n),
   };
   if (theory->truth_se > 0) model.offset_precision = 1 / (theory->truth_se * theory->truth_se);
   model.n_columns = model.n_terms + (model.offset_precision > 0);
 
   struct solution held, best;
-  double rate = theory->family.theory;
+  double rate = bias_theory_rate(theory);
   if (!solve_linear(&model, rate, &held)) return fit;
   fit.measured = true;
   fit.coefficient = held.x[0];
@@ -255,7 +246,8 @@ struct bias_fit fit_bias(const struct prediction *theory, const struct moments *
   fill_expected(&model, &held, fit.expected);
   fit.lack_of_fit = lack_of_fit(&model, &held, false, v->worth, *arena);
   if (theory->unbiased) return fit;
-  fit.rate_se_theory = 2.0 / theory->d * curvature_se(&model, &held);
+  if (isnan(rate)) return fit;
+  fit.rate_se_theory = curvature_se(&model, &held);
   fit.rate_found = find_rate(&model, &held, &best, v->dof, &fit);
   if (fit.rate_found) fit.lack_of_fit = lack_of_fit(&model, &best, true, v->worth, *arena);
   return fit;

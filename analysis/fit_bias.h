@@ -4,6 +4,7 @@
 #ifndef ANALYSIS_FIT_BIAS_H
 #define ANALYSIS_FIT_BIAS_H
 
+#include "analysis/bias_family.h"
 #include "analysis/bins.h"
 #include "analysis/fit_variance.h"
 #include "analysis/prediction.h"
@@ -15,12 +16,10 @@ struct bias_fit {
   double *expected;                   // [n] fitted bias, the exponent held at theory
   struct chi2 lack_of_fit;            // rate free where it was found, else held
   bool rate_found;                    // the profile closes on both sides within the range searched
-  double rate, rate_se, rate_lo, rate_hi; // |bias of iteration i| ~ i^-rate; 95 % profile interval
+  double rate, rate_se, rate_lo, rate_hi; // see bias_theory_rate; 95 % profile interval
   double rate_se_theory;                  // standard error of the rate if theory is right
   double rate_deviate;                    // signed root of the likelihood ratio against theory
 };
-
-double bias_theory_rate(const struct prediction *);
 
 // With the variance's fit, and [n] its variances of one iteration that weigh the means.
 struct bias_fit fit_bias(const struct prediction *, const struct moments *iteration,

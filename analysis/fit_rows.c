@@ -122,6 +122,7 @@ static void fit_bias_series(const struct results *results, const struct series *
   struct bias_fit b = {0};
   if (!v->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
   row->why = v->why || isfinite(theory->truth) ? v->why : fit_no_reference;
+  if (!row->why && theory->bias_kind == BIAS_STAYS) row->why = "an edge stays in the disc";
   bias_row(&b, v, theory, row);
   if (theory->independent && b.measured) {
     add_deviate(row, "independence", dependence); // its standard errors rest on it

@@ -142,6 +142,7 @@ static double silence(const struct prediction *theory, double runs) {
 static const char *why_not(const struct prediction *theory, const struct moments *iteration,
                            double *improbable) {
   double runs = iteration[0].n;
+  if (theory->why_not) return theory->why_not;
   if (theory->first == theory->n) return "no disc is clear of edges";
   if (runs < 2) return "one run";
   if (is_dark(theory)) {

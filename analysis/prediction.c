@@ -7,16 +7,32 @@
 // Excess kurtosis of a mean of `photons` values with these raw moments.
 static double excess_kurtosis(const double m[PROFILE_MOMENTS], double photons) {
   double variance = m[1] - m[0] * m[0];
+  if (variance == 0) return 0; // no photon, ever
   double fourth = m[3] + m[0] * (-4 * m[2] + m[0] * (6 * m[1] - 3 * m[0] * m[0]));
   return (fourth / (variance * variance) - 3) / photons;
 }
 
-// A bias below the rounding of the quadrature (PROFILE_NODES^2 products) is none; to see it would
+// A bias below the rounding of the quadrature (CHEBYSHEV_TERMS^2 products) is none; to see it would
 // take 1e24 photons.
 static bool is_zero_bias(const double *bias, uint64_t n, double exact) {
   double largest = 0;
   for (uint64_t j = 0; j < n; j++) largest = fmax(largest, fabs(bias[j]));
   return largest <= 1e-12 * fabs(exact);
+}
+
+// At an edge nearer than 1 % of the last radius r the bias, half the light less 4 a / (pi r) of it
+// for the box, falls as r^0.03 at most: nobody measures that.
+static const double at_edge = 0.01;
+
+static enum bias_kind kind_of_bias(const struct profile *profile, double last_radius) {
+  if (profile->shadow.shade == SHADE_NONE) return BIAS_SMOOTH;
+  if (profile->shadow.distance >= last_radius) return BIAS_ENDS;
+  return profile->shadow.distance < at_edge * last_radius ? BIAS_EDGE : BIAS_STAYS;
+}
+
+static uint64_t count_biased(const double *bias, uint64_t n) {
+  while (n > 0 && bias[n - 1] == 0) n--;
+  return n;
 }
 
 struct prediction prediction_from_profile(const struct profile *profile, double radius,
@@ -39,13 +55,18 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   }
   bool unbiased = is_zero_bias(bias, n, profile->exact);
   for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = richardson[j] = family->rho[j];
+  bool darkens = profile->shadow.shade == SHADE_DARK && !unbiased && divergent[n - 1] == 0;
   return (struct prediction){
       .d = 2,
       .n = n,
       .family = *family,
+      .why_not = darkens ? "no light in the last discs" : NULL,
       .closed_form = true,
       .independent = true,
       .unbiased = unbiased,
+      .bias_kind =
+          unbiased ? BIAS_SMOOTH : kind_of_bias(profile, radius * sqrt(family->rho[n - 1])),
+      .bias_end = count_biased(bias, n),
       .truth = profile->exact + emitted,
       .variance_coefficient = profile_roughness(profile) / (photons * radius * radius),
       .bias_coefficient = unbiased ? 0 : bias[0],
@@ -113,22 +134,21 @@ static uint64_t first_clear(const struct scene *scene, const struct probe *probe
 // small (2^-20 of what is clear) that no closed form changes within it. NAN: no closed form.
 static double truth_at(const struct scene *scene, const struct cell *cell,
                        const struct probe *probe, struct arena scratch) {
-  struct ring_mean ring;
+  struct profile profile;
   if (!probe->hit) return NAN;
   double clear = receiver_clearance(scene, probe->p, probe->n, scratch);
   double radius = 0x1p-20 * (clear < INFINITY ? clear : 1);
-  if (!ring_mean_find(scene, cell, probe, radius, scratch, &ring)) return NAN;
-  return profile_new(&ring, cell->kernel, radius).exact + probe->emitted;
+  if (!profile_find(scene, cell, probe, radius, scratch, &profile)) return NAN;
+  return profile.exact + probe->emitted;
 }
 
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {
-  struct ring_mean ring;
+  struct profile profile;
   struct prediction p;
   if (cell_radius_is_known(cell) &&
-      ring_mean_find(scene, cell, probe, cell->radius, *arena, &ring)) {
-    struct profile profile = profile_new(&ring, cell->kernel, cell->radius);
+      profile_find(scene, cell, probe, cell->radius, *arena, &profile)) {
     p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted,
                                 family, arena);
   } else {

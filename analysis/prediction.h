@@ -11,6 +11,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+// How the bias of an iteration depends on its radius.
+enum bias_kind {
+  BIAS_SMOOTH, // as r^2, and higher powers of it
+  BIAS_EDGE,   // not at all: the probe is at an edge of the light (theory 1.5)
+  BIAS_ENDS,   // it is none from iteration bias_end + 1 on: the discs are clear of an edge
+  BIAS_STAYS,  // the last disc still reaches across an edge, and no power describes it
+};
+
 // Where there is a closed form, at theory's radii and per iteration,
 //   variance = divergent + rest, bias = bias,
 // exactly. Elsewhere only their shape is known: variance = a divergent + c rest and
@@ -21,10 +29,13 @@ struct prediction {
   uint64_t n;     // iterations
   uint64_t first; // those before are not fitted: theory says nothing of their larger discs
   struct family family;
+  const char *why_not; // why nothing is fitted although theory knows all; or NULL
   bool closed_form;
   bool independent; // of each other; else radii follow the photons found, the law holds in
                     // expectation, and exponents are predicted but constants are not (theory 2.4)
   bool unbiased;    // theory's bias is zero for every radius
+  enum bias_kind bias_kind;
+  uint64_t bias_end;           // of BIAS_ENDS: iterations that have a bias
   double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against
   double variance_coefficient; // A: the leading term of the first iteration's variance; or NAN
   double bias_coefficient;     // b_1: the first iteration's bias; or NAN

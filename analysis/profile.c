@@ -1,45 +1,13 @@
 #include "analysis/profile.h"
 
+#include "analysis/mirror.h"
 #include "analysis/receiver.h"
 #include "analysis/special.h"
+#include "analysis/sphere.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
-
-double chebyshev_value(const struct chebyshev *c, double x) {
-  double y = 2 * x / c->hi - 1, b1 = 0, b2 = 0; // Clenshaw
-  for (int k = PROFILE_NODES - 1; k >= 1; k--) {
-    double b = 2 * y * b1 - b2 + c->coefficient[k];
-    b2 = b1, b1 = b;
-  }
-  return y * b1 - b2 + c->coefficient[0];
-}
-
-static double chebyshev_node(double hi, int k) {
-  return hi * (1 + cos(pi * (k + 0.5) / PROFILE_NODES)) / 2;
-}
-
-static struct chebyshev chebyshev_fit(double hi, const double value[PROFILE_NODES]) {
-  struct chebyshev c = {.hi = hi};
-  for (int j = 0; j < PROFILE_NODES; j++) {
-    double sum = 0;
-    for (int k = 0; k < PROFILE_NODES; k++)
-      sum += value[k] * cos(pi * j * (k + 0.5) / PROFILE_NODES);
-    c.coefficient[j] = (j ? 2 : 1) * sum / PROFILE_NODES;
-  }
-  return c;
-}
-
-// The last coefficients of a smooth function are rounding: PROFILE_NODES terms of 1e-16 each.
-static bool chebyshev_converged(const struct chebyshev *c) {
-  double largest = 0, last = 0;
-  for (int k = 0; k < PROFILE_NODES; k++) {
-    largest = fmax(largest, fabs(c->coefficient[k]));
-    if (k >= PROFILE_NODES - 4) last = fmax(last, fabs(c->coefficient[k]));
-  }
-  return last <= 1e-13 * largest;
-}
 
 // ---- the light around the probe ----
 
@@ -48,12 +16,21 @@ struct neighbourhood {
   const struct light *light;
   struct vec p, n, s, t;
   int channel; // that carries the most flux: all are in proportion
+  bool mirrored;
+  struct plane mirror;
 };
+
+// Of the light's mirror image p receives what its own image receives of the light.
+static bool form_at(const struct neighbourhood *at, struct vec p, struct light_closed_form *form) {
+  struct vec n = at->n;
+  if (at->mirrored) p = mirror_point(&at->mirror, p), n = mirror_direction(&at->mirror, n);
+  return at->light->type->closed_form(at->scene, at->light, p, n, form);
+}
 
 static bool density_at(const struct neighbourhood *at, double x, double y, double *density) {
   struct vec p = vec_along(vec_along(at->p, at->s, x), at->t, y);
   struct light_closed_form form;
-  if (!at->light->type->closed_form(at->scene, at->light, p, at->n, &form)) return false;
+  if (!form_at(at, p, &form)) return false;
   *density = form.irradiance[at->channel] / form.photon_flux[at->channel];
   return true;
 }
@@ -82,18 +59,55 @@ static bool light_is_alone(const struct scene *scene, const struct cell *cell) {
          cell->integrator->photons;
 }
 
+// The shadow's edge is where the density falls to nothing: elsewhere it must be the same.
+static bool is_uniform(const struct neighbourhood *at, double radius) {
+  enum { RINGS = 8, ANGLES = 16 };
+  double centre, density;
+  if (!density_at(at, 0, 0, &centre)) return false;
+  for (int k = 0; k < RINGS * ANGLES; k++) {
+    double r = radius * (k / ANGLES + 1) / RINGS, phi = 2 * pi * (k % ANGLES) / ANGLES;
+    if (!density_at(at, r * cos(phi), r * sin(phi), &density)) return false;
+    if (fabs(density - centre) > 1e-12 * centre) return false;
+  }
+  return centre > 0;
+}
+
+static bool find_shadow(const struct neighbourhood *at, bool direct_only, double radius,
+                        struct arena scratch, struct half_shadow *shadow) {
+  struct light_sample here, there;
+  const struct light *light = at->light;
+  struct vec beside = vec_along(at->p, at->s, radius);
+  if (!light->type->delta || !is_uniform(at, radius)) return false;
+  if (!light->type->sample(at->scene, light, at->p, NULL, &here)) return false;
+  if (!light->type->sample(at->scene, light, beside, NULL, &there)) return false;
+  if (here.wi.x != there.wi.x || here.wi.y != there.wi.y || here.wi.z != there.wi.z) return false;
+  // Photons on what casts it must be out of reach.
+  if (!(receiver_surroundings(at->scene, at->p, at->n, scratch) > radius)) return false;
+  return shadow_find(at->scene, at->p, at->n, here.wi, here.distance, radius, direct_only, scratch,
+                     shadow);
+}
+
+// Nothing but the light: or a mirror, or what casts a shadow.
+static bool find_way(struct neighbourhood *at, const struct cell *cell, double radius,
+                     struct arena scratch, struct half_shadow *shadow) {
+  bool direct_only = cell->depth <= 1;
+  if (receiver_is_plane(at->scene, at->p, at->n, 0, direct_only)) return true;
+  at->mirrored = mirror_find(at->scene, cell, at->p, at->n, radius, scratch, &at->mirror);
+  return at->mirrored || find_shadow(at, direct_only, radius, scratch, shadow);
+}
+
 bool ring_mean_find(const struct scene *scene, const struct cell *cell, const struct probe *probe,
                     double radius, struct arena scratch, struct ring_mean *ring) {
   if (!probe->hit || !light_is_alone(scene, cell)) return false;
-  const struct light *light = &scene->light[0];
+  struct neighbourhood at = {
+      .scene = scene, .light = &scene->light[0], .p = probe->p, .n = probe->n};
+  vec_basis(at.n, &at.s, &at.t);
+  ring->shadow = (struct half_shadow){SHADE_NONE, INFINITY};
+  if (!find_way(&at, cell, radius, scratch, &ring->shadow)) return false;
   struct light_closed_form form;
-  if (!light->type->closed_form(scene, light, probe->p, probe->n, &form)) return false;
-  if (!(form.clear_radius > radius)) return false;
-  if (!receiver_is_plane(scene, probe->p, probe->n, 0, cell->depth <= 1)) return false;
+  if (!form_at(&at, at.p, &form) || !(form.clear_radius > radius)) return false;
   if (!(receiver_clearance(scene, probe->p, probe->n, scratch) > radius)) return false;
 
-  struct neighbourhood at = {.scene = scene, .light = light, .p = probe->p, .n = probe->n};
-  vec_basis(at.n, &at.s, &at.t);
   double flux[3];
   for (int c = 0; c < 3; c++) {
     if (form.photon_flux[c] > form.photon_flux[at.channel]) at.channel = c;
@@ -101,8 +115,8 @@ bool ring_mean_find(const struct scene *scene, const struct cell *cell, const st
   }
   ring->flux = luminance(flux, 3);
 
-  double value[PROFILE_NODES], hi = radius * radius;
-  for (int k = 0; k < PROFILE_NODES; k++)
+  double value[CHEBYSHEV_TERMS], hi = radius * radius;
+  for (int k = 0; k < CHEBYSHEV_TERMS; k++)
     if (!circle_mean(&at, sqrt(chebyshev_node(hi, k)), &value[k])) return false;
   ring->density = chebyshev_fit(hi, value);
   return chebyshev_converged(&ring->density);
@@ -144,28 +158,50 @@ struct profile profile_new(const struct ring_mean *ring, const struct kernel *ke
                            double radius) {
   struct kernel_rule rule = kernel_rule_new(kernel);
   double hi = radius * radius, centre = chebyshev_value(&ring->density, 0);
-  struct profile profile = {.exact = ring->flux * centre, .flux = ring->flux};
-  double mean[PROFILE_NODES][PROFILE_MOMENTS], value[PROFILE_NODES];
-  for (int m = 0; m < PROFILE_NODES; m++)
+  struct profile profile = {.flux = ring->flux, .kernel = kernel, .shadow = ring->shadow};
+  if (ring->shadow.shade != SHADE_DARK) profile.exact = ring->flux * centre;
+  double mean[CHEBYSHEV_TERMS][PROFILE_MOMENTS], value[CHEBYSHEV_TERMS];
+  for (int m = 0; m < CHEBYSHEV_TERMS; m++)
     kernel_means(&rule, ring, centre, chebyshev_node(hi, m), mean[m]);
   for (int j = 0; j < PROFILE_MOMENTS; j++) {
-    for (int m = 0; m < PROFILE_NODES; m++) value[m] = mean[m][j];
+    for (int m = 0; m < CHEBYSHEV_TERMS; m++) value[m] = mean[m][j];
     profile.moment[j] = chebyshev_fit(hi, value);
   }
+  if (ring->shadow.shade != SHADE_NONE) profile.density = centre;
   return profile;
 }
 
+bool profile_find(const struct scene *scene, const struct cell *cell, const struct probe *probe,
+                  double radius, struct arena scratch, struct profile *profile) {
+  struct ring_mean ring;
+  if (sphere_find(scene, cell, probe, radius, profile)) return true;
+  if (!ring_mean_find(scene, cell, probe, radius, scratch, &ring)) return false;
+  *profile = profile_new(&ring, cell->kernel, radius);
+  return true;
+}
+
+// What the half of the disc beyond the edge holds when it is lit, over flux^j and r^-2(j-1).
+static double beyond(const struct profile *profile, int j, double r) {
+  return profile->density * shadow_beyond(profile->kernel, j, profile->shadow.distance / r);
+}
+
 double profile_bias(const struct profile *profile, double r) {
-  return profile->flux * chebyshev_value(&profile->moment[0], r * r);
+  if (profile->shadow.shade == SHADE_NONE)
+    return profile->flux * chebyshev_value(&profile->moment[0], r * r);
+  double size = profile->flux * beyond(profile, 1, r);
+  return profile->shadow.shade == SHADE_LIT ? -size : size;
 }
 
 double profile_moment(const struct profile *profile, int j, double r) {
   if (j == 1) return profile->exact + profile_bias(profile, r);
-  double value = profile->flux * chebyshev_value(&profile->moment[j - 1], r * r);
+  double value = chebyshev_value(&profile->moment[j - 1], r * r);
+  if (profile->shadow.shade == SHADE_LIT) value -= beyond(profile, j, r);
+  if (profile->shadow.shade == SHADE_DARK) value = beyond(profile, j, r);
   for (int k = 1; k < j; k++) value *= profile->flux / (r * r);
-  return value;
+  return profile->flux * value;
 }
 
 double profile_roughness(const struct profile *profile) {
+  if (profile->shadow.shade == SHADE_DARK) return 0;
   return profile->flux * profile->flux * chebyshev_value(&profile->moment[1], 0);
 }
