@@ -23,31 +23,31 @@ cells(keys) = found(system("cat ".here."/manifest.json 2>/dev/null | awk -v keys
 cell(keys) = int(word(cells(keys)." -1", 1))
 averages(c) = found(system(sprintf("cd %s/images 2>/dev/null && ls | ".\
   "sed -n 's/.*-cell%03d-\\([0-9]*\\)\\.csv$/\\1/p' | sort -n", here, c)), sprintf("image of cell %d", c))
-image(c, n) = found(system(sprintf("ls %s/images/*-cell%03d-%s.csv 2>/dev/null", here, c, n)), \
-  sprintf("image of cell %d after %s", c, n))
+image(c, n) = found(system(sprintf("ls %s/images/*-cell%03d-%s.csv 2>/dev/null", here, c, "".n)), \
+  sprintf("image of cell %d after %s", c, "".n))
 seconds(g, n) = real("0".found(system(sprintf("cat %s/timing.csv 2>/dev/null | awk -F, ".\
-  "'$1 == \"%d\" && $6 == \"%s\" { s += $10; n++ } END { if (n) print s }'", here, g, n)), \
-  sprintf("time of group %d after %s", g, n)))
+  "'$1 == \"%d\" && $6 == \"%s\" { s += $10; n++ } END { if (n) print s }'", here, g, "".n)), \
+  sprintf("time of group %d after %s", g, "".n)))
 last(list) = word(list, words(list))
 if (system("mkdir -p ".here."/figures && echo made") ne "made") {
   print results."/figures: cannot make this directory"
   exit status 1
 }
 
-# ---- numbers: means over pixels and channels ----
+# ---- numbers: means over pixels and channels; ranges would leave some out ----
+every = "set xrange [*:*]; set yrange [*:*]; unset logscale; "
 beside(files) = "< paste -d, ".files # quoted; k-th file's colours: columns 5 k - 2 to 5 k
-sum3(a, b, k) = (column(k) - column(a)) * (column(k) - column(b)) + \
-  (column(k + 1) - column(a + 1)) * (column(k + 1) - column(b + 1)) + \
-  (column(k + 2) - column(a + 2)) * (column(k + 2) - column(b + 2))
+times(k) = (column(k) - column(k + 5)) * (column(k + 10) - column(k + 15))
 # The picture's width and height in pixels, and its mean.
-sizes(file) = (subject = file, "stats subject skip 1 using 1:2 nooutput; ".\
+sizes(file) = (subject = file, every."stats subject skip 1 using 1:2 nooutput; ".\
   "width = STATS_max_x + 1; height = STATS_max_y + 1; ".\
   "stats subject skip 1 using (($3 + $4 + $5) / 3) nooutput; mean = STATS_mean")
-# mean_square of (file - one) (file - other): with two independent references their noise cancels;
-# with the same file twice it is the mean square difference.
-compare(file, one, other) = (subject = beside(quoted(file)." ".quoted(one)." ".quoted(other)), \
-  "stats subject skip 1 using (sum3(8, 13, 3) / 3) nooutput; mean_square = STATS_mean")
-root(square) = square > 0 ? sqrt(square) : NaN
+# mean_product of (a - b) (c - d): the mean square difference where c, d are a, b; the mean square error
+# of a = c where b and d are references, whose own noise cancels if they are independent.
+compare(a, b, c, d) = (subject = beside(quoted(a)." ".quoted(b)." ".quoted(c)." ".quoted(d)), \
+  every."stats subject skip 1 using ((times(3) + times(4) + times(5)) / 3) nooutput; mean_product = STATS_mean")
+root(square) = square >= 0 ? sqrt(square) : NaN
+percent(v) = sprintf(v < 0.995 ? "%.2g %%" : "%.0f %%", 100 * v)
 
 # ---- one tone curve: `exposure` times radiance, sRGB's curve ----
 curve(c) = c <= 0.0031308 ? 12.92 * c : 1.055 * c**(1 / 2.4) - 0.055
@@ -77,13 +77,16 @@ mark(tag, x, y, w, h, colour) = sprintf("set object %d rectangle from %g,%g to %
 # ---- the page: paper_x, paper_y are set by the figure ----
 place(x, y, w, h) = sprintf("set lmargin at screen %.6f; set rmargin at screen %.6f; ".\
   "set tmargin at screen %.6f; set bmargin at screen %.6f", \
-  x / paper_x, (x + w) / paper_x, 1 - y / paper_y, 1 - (y + h) / paper_y)
+  x / real(paper_x), (x + w) / real(paper_x), 1 - y / real(paper_y), 1 - (y + h) / real(paper_y))
 bare = "unset logscale; unset tics; unset key; unset xlabel; unset ylabel; unset title; unset grid; ".\
   "set border 0; set size noratio"
 axes = "set border 3 linewidth 0.6 linecolor '#444444'; set xtics scale 0.6,0.3 nomirror; ".\
   "set ytics scale 0.6,0.3 nomirror; set grid xtics ytics linecolor '#DDDDDD' linewidth 0.4 linetype 1, linetype 1"
 colour(k) = word("#0072B2 #D55E00 #009E73 #CC79A7 #E69F00 #56B4E9", k)
 shape(k) = int(word("7 5 9 13 11 15", k))
+# A line of small print at the bottom.
+note(text) = (subject = text, place(0, paper_y - 0.2, paper_x, 0.2)."; set label 1 subject at graph 0.5,0.5 center ".\
+  "textcolor '#444444' font ',7'; plot [0:1] [0:1] NaN; unset label 1")
 terminals = "pdf svg png"
 terminal(name) = (name eq "pdf" ? "set terminal pdfcairo enhanced font 'Helvetica,8' size paper_x,paper_y" : \
   name eq "svg" ? "set terminal svg enhanced font 'Helvetica,11' size 140 * paper_x,140 * paper_y background 'white'" : \
