@@ -42,11 +42,15 @@ times(k) = (column(k) - column(k + 5)) * (column(k + 10) - column(k + 15))
 sizes(file) = (subject = file, every."stats subject skip 1 using 1:2 nooutput; ".\
   "width = STATS_max_x + 1; height = STATS_max_y + 1; ".\
   "stats subject skip 1 using (($3 + $4 + $5) / 3) nooutput; mean = STATS_mean")
-# mean_product of (a - b) (c - d): the mean square difference where c, d are a, b; the mean square error
-# of a = c where b and d are references, whose own noise cancels if they are independent.
-compare(a, b, c, d) = (subject = beside(quoted(a)." ".quoted(b)." ".quoted(c)." ".quoted(d)), \
-  every."stats subject skip 1 using ((times(3) + times(4) + times(5)) / 3) nooutput; mean_product = STATS_mean")
+# mean_square of (a - b) (c - d): what two differences have in common. compare(file, one, other) is its error:
+# two independent references' own noise cancels and leaves a standard error of at most square_error; with one
+# reference twice it is the mean square difference.
+covary(a, b, c, d) = (subject = beside(quoted(a)." ".quoted(b)." ".quoted(c)." ".quoted(d)), \
+  every."stats subject skip 1 using ((times(3) + times(4) + times(5)) / 3) nooutput; ".\
+  "mean_square = STATS_mean; square_error = STATS_stddev / sqrt(STATS_records)")
+compare(file, one, other) = covary(file, one, file, other)
 root(square) = square >= 0 ? sqrt(square) : NaN
+root_error(square, error) = error / (2 * root(square)) # of the root, from that of the square
 percent(v) = sprintf(v < 0.995 ? "%.2g %%" : "%.0f %%", 100 * v)
 
 # ---- one tone curve: `exposure` times radiance, sRGB's curve ----
@@ -59,13 +63,13 @@ expose_mean = "exposure = 1 / (3 * mean)" # shows the mean as a third
 as_image = "with rgbimage; unset label 1"
 draw(file) = (subject = file, "plot subject skip 1 using 1:(height - 1 - $2):".\
   "(tone(exposure * $3)):(tone(exposure * $4)):(tone(exposure * $5)) ".as_image)
-# `factor` times the difference, by colour; and of the mean of the colours from white, where nothing
-# differs, to orange, where `one` is larger, or blue (Okabe and Ito's): full at one third of white.
+# `factor` times the difference in the same tones, by colour; and of the mean of the colours, from white,
+# where nothing differs, to orange, where `one` is larger, or blue (Okabe and Ito's).
 pair(one, other) = (subject = beside(quoted(one)." ".quoted(other)), "plot subject skip 1 using 1:(height - 1 - $2):")
 absolute(k) = tone(exposure * factor * abs(column(k) - column(k + 5)))
 draw_absolute(one, other) = pair(one, other)."(absolute(3)):(absolute(4)):(absolute(5)) ".as_image
-difference(k) = clipped(factor * exposure * abs($3 + $4 + $5 - $8 - $9 - $10))
-shade(high, low) = 255 - difference(0) * (255 - ($3 + $4 + $5 > $8 + $9 + $10 ? high : low))
+excess(k) = (column(k) + column(k + 1) + column(k + 2) - column(k + 5) - column(k + 6) - column(k + 7)) / 3
+shade(high, low) = 255 - tone(factor * exposure * abs(excess(3))) * (1 - (excess(3) > 0 ? high : low) / 255.)
 draw_signed(one, other) = pair(one, other)."(shade(213, 0)):(shade(94, 114)):(shade(0, 178)) ".as_image
 # Everything, or the pixels from (x, y) on, counted from the top left; and a frame around these.
 whole = "set xrange [-0.5:width - 0.5]; set yrange [-0.5:height - 0.5]"

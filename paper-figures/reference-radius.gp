@@ -32,8 +32,8 @@ do for [s = 1:3] {
     picture[3 * (s - 1) + k] = image(c, most[s])
     eval "set print ".sprintf("$error_%d_%d", s, k)
     do for [n in ns] {
-      eval compare(image(c, n), truth[s], image(c, n), truth[s])
-      print sprintf("%s,%.9g", n, sqrt(mean_product) / mean)
+      eval compare(image(c, n), truth[s], truth[s])
+      print sprintf("%s,%.9g", n, sqrt(mean_square) / mean)
     }
     unset print
   }
