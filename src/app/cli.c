@@ -62,6 +62,8 @@ static const struct option options[] = {
     {"lenient", NULL, NULL, "leave displacement, normal maps and the like out, and say so",
      take_lenient},
     {"quality", "NAME", NULL, "default or paper", take_quality},
+    {"until", "CONDITION", "until", "a standard error of every rate, as \"rate_se <= 0.004\"",
+     NULL},
     {"seed", "SEED", "seed", "a number, or a name that is hashed", NULL},
     {"integrator", "NAME", "integrator", "see 'photonlab list integrators'", NULL},
     {"iterations", "N", "iterations", "how many iterations are averaged", NULL},
@@ -81,9 +83,9 @@ static const struct option options[] = {
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
-static const struct command *const commands[] = {&command_run,     &command_fit,  &command_plot,
-                                                 &command_render,  &command_info, &command_list,
-                                                 &command_validate};
+static const struct command *const commands[] = {&command_run,      &command_fit,  &command_plot,
+                                                 &command_render,   &command_info, &command_list,
+                                                 &command_validate, &command_plan};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----

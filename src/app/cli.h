@@ -17,7 +17,7 @@ struct cli {
     const char *option, *key, *text;
   } setting[CLI_MAX_SETTINGS];
   int n_settings;
-  const char *source;              // where the settings were said, for messages
+  const char *source; // where the settings were said, for messages
   struct arena *arena;
 };
 
@@ -39,6 +39,6 @@ const char *cli_setting_of(const struct cli *, const char *key);
 int cli_main(int argc, char **argv);
 
 extern const struct command command_run, command_fit, command_plot, command_render, command_info,
-    command_list, command_validate;
+    command_plan, command_list, command_validate;
 
 #endif

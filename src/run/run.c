@@ -24,9 +24,7 @@ struct units {
   double total_s, left_s; // of the groups that have something left: all their blocks; those listed
 };
 
-// Seconds one run of a group takes on one thread: a few of its iterations, spread over all of them,
-// until a twentieth of a second has passed.
-static double measure_run_s(const struct group_plan *plan, struct arena scratch) {
+double run_seconds(const struct group_plan *plan, struct arena scratch) {
   enum { PLACES = 5 };
   const struct measurement *measure = &plan->measure;
   const struct integrator_type *integrator = plan->cell->integrator;
@@ -63,7 +61,7 @@ static void add_missing(const struct plan *plan, int g, const char *folder, stru
       *arena_push(arena, units) = (struct unit){g, b, 0};
   }
   if (units->count == first) return;
-  double run_s = measure_run_s(group, *arena);
+  double run_s = run_seconds(group, *arena);
   units->total_s += run_s * (double)group->runs;
   for (ptrdiff_t k = first; k < units->count; k++) {
     units->item[k].work = run_s * block_runs(group, units->item[k].block);

@@ -4,6 +4,10 @@
 
 #include "run/plan.h"
 
+// Seconds one run of a group takes on one thread: a few of its iterations, spread over all of them,
+// until a twentieth of a second has passed.
+double run_seconds(const struct group_plan *, struct arena scratch);
+
 enum run_outcome { RUN_FAILED, RUN_DONE, RUN_INTERRUPTED };
 
 // Runs the experiment into `directory` (made if needed), going on where an interrupted run of the
