@@ -27,6 +27,7 @@ static bool light_in_disc(const struct scene *scene, const struct radius_row *ro
                           struct arena scratch, struct light_in_disc *light) {
   struct ring_mean ring;
   light->r1 = sqrt(row->series->radius2[0].mean);
+  if (row->cell->footprint) return false; // the first disc is anywhere in the pixel
   if (!ring_mean_find(scene, row->cell, row->probe, light->r1, scratch, &ring)) return false;
   light->profile = profile_new(&ring, kernel_find("box"), light->r1);
   return true;

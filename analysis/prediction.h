@@ -14,7 +14,9 @@
 // How the bias of an iteration depends on its radius.
 enum bias_kind {
   BIAS_SMOOTH, // as r^2, and higher powers of it
-  BIAS_EDGE,   // not at all: the probe is at an edge of the light (theory 1.5)
+  BIAS_SIDE,   // as r: the side of the probe's pixel is an edge of the light, the bias the error
+               // integrated over one side of it (theory 5 iv)
+  BIAS_EDGE,   // not at all: the probe is at an edge (theory 1.5)
   BIAS_ENDS,   // it is none from iteration bias_end + 1 on: the discs are clear of an edge
   BIAS_STAYS,  // the last disc still reaches across an edge, and no power describes it
 };
