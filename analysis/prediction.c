@@ -1,5 +1,6 @@
 #include "analysis/prediction.h"
 
+#include "analysis/expected_radius.h"
 #include "analysis/receiver.h"
 
 #include <math.h>
@@ -182,6 +183,17 @@ static double truth_at(const struct scene *scene, const struct cell *cell,
   return profile.exact + probe->emitted;
 }
 
+// Radii that follow the photons found: those expected of them stand for the law's.
+static struct family expected_family(const struct scene *scene, const struct cell *cell,
+                                     const struct probe *probe, const struct family *family,
+                                     struct arena *arena) {
+  struct family own = *family;
+  if (!cell->law->count) return own;
+  double *rho = arena_new(arena, double, (ptrdiff_t)family->n);
+  if (expected_radius(scene, cell, probe, cell->radius, 1, family->n, rho, *arena)) own.rho = rho;
+  return own;
+}
+
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {
@@ -189,8 +201,9 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
   struct prediction p;
   if (cell_radius_is_known(cell) &&
       profile_find(scene, cell, probe, cell->radius, *arena, &profile)) {
-    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted,
-                                family, arena);
+    struct family own = expected_family(scene, cell, probe, family, arena);
+    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted, &own,
+                                arena);
   } else {
     double truth = probe->reference, se = probe->reference_se;
     if (isnan(truth) && !cell_radius_is_known(cell))

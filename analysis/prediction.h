@@ -33,9 +33,10 @@ struct prediction {
   struct family family;
   const char *why_not; // why nothing is fitted although theory knows all; or NULL
   bool closed_form;
-  bool independent; // of each other; else radii follow the photons found, the law holds in
-                    // expectation, and exponents are predicted but constants are not (theory 2.4)
-  bool unbiased;    // theory's bias is zero for every radius
+  bool independent; // of each other; else radii follow the photons found, are those expected in
+                    // closed form, else the law's, and exponents are predicted but constants are
+                    // not (theory 2.4)
+  bool unbiased; // theory's bias is zero for every radius
   enum bias_kind bias_kind;
   uint64_t bias_end;           // of BIAS_ENDS: iterations that have a bias
   double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against
