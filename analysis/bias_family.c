@@ -2,10 +2,16 @@
 
 #include <math.h>
 
+// The power of r.
+static double power_of(const struct prediction *theory) {
+  return theory->bias_kind == BIAS_SIDE ? 1 : 2;
+}
+
 double bias_theory_rate(const struct prediction *theory) {
   switch (theory->bias_kind) {
   case BIAS_SMOOTH:
-    return 2.0 / theory->d * (1 - theory->family.theory);
+  case BIAS_SIDE:
+    return power_of(theory) / theory->d * (1 - theory->family.theory);
   case BIAS_EDGE:
     return 0;
   case BIAS_ENDS:
@@ -16,10 +22,10 @@ double bias_theory_rate(const struct prediction *theory) {
   return NAN;
 }
 
-// The law itself at the rate of the variance that this is the bias's rate for: rate = (2 / d) (1 -
-// a).
+// The law itself at the rate a of the variance that this is the bias's rate for: rate = (q / d) (1
+// - a), q the power of r.
 static void by_radius(const struct prediction *theory, double rate, double *shape, double *slope) {
-  double per_log = 2.0 / theory->d;
+  double per_log = power_of(theory) / theory->d;
   family_ratio(&theory->family, 1 - rate / per_log, shape, slope);
   for (uint64_t j = 0; j < theory->n; j++) {
     shape[j] = theory->bias[j] * exp(per_log * shape[j]);
@@ -56,6 +62,7 @@ static void by_tail(const struct prediction *theory, double rate, double *shape,
 void bias_family(const struct prediction *theory, double rate, double *shape, double *slope) {
   switch (theory->bias_kind) {
   case BIAS_SMOOTH:
+  case BIAS_SIDE:
     by_radius(theory, rate, shape, slope);
     return;
   case BIAS_ENDS:

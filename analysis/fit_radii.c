@@ -1,7 +1,7 @@
 #include "analysis/fit_radii.h"
 
+#include "analysis/expected_radius.h"
 #include "analysis/fit_rows.h"
-#include "analysis/local_radius.h"
 #include "analysis/special.h"
 #include "base/file.h"
 #include "experiment/cell_keys.h"
@@ -9,52 +9,22 @@
 #include <math.h>
 #include <string.h>
 
-static const double family_wise_level = 0.01, pi = 3.14159265358979323846;
-
-// Photons on the plane around a probe.
-struct light_in_disc {
-  double r1;
-  struct profile profile; // of the box kernel: the mean density in a disc
-};
-
-static double fraction(const void *of, double s) {
-  const struct light_in_disc *light = of;
-  double r = light->r1 * sqrt(s);
-  return pi * r * r * profile_moment(&light->profile, 1, r) / light->profile.flux;
-}
-
-static bool light_in_disc(const struct scene *scene, const struct radius_row *row,
-                          struct arena scratch, struct light_in_disc *light) {
-  struct ring_mean ring;
-  light->r1 = sqrt(row->series->radius2[0].mean);
-  if (!ring_mean_find(scene, row->cell, row->probe, light->r1, scratch, &ring)) return false;
-  light->profile = profile_new(&ring, kernel_find("box"), light->r1);
-  return true;
-}
+static const double family_wise_level = 0.01;
 
 // E and deviation of r_i^2; what rounding leaves of a deviation of zero may be negative.
-static void expect_local(const struct local_radius *local, struct radius_row *row,
-                         struct arena *arena) {
-  uint64_t n = row->series->n_iterations;
-  row->expected = arena_new(arena, double, (ptrdiff_t)n);
-  row->spread = arena_new(arena, double, (ptrdiff_t)n);
-  local_radius_moment(local, 1, n, row->expected, *arena);
-  local_radius_moment(local, 2, n, row->spread, *arena);
-  for (uint64_t j = 0; j < n; j++) {
-    double variance = row->spread[j] - row->expected[j] * row->expected[j];
-    row->spread[j] = variance > 0 ? sqrt(variance) : 0;
-  }
-}
-
 static void expect(const struct scene *scene, struct radius_row *row, struct arena *arena) {
-  const struct cell *cell = row->cell;
-  struct light_in_disc light;
-  row->first_disc = NAN;
-  if (!light_in_disc(scene, row, *arena, &light)) return;
-  row->first_disc = (double)cell->photons * fraction(&light, 1);
-  const struct local_radius local = {cell->law, cell->alpha, (double)cell->photons, fraction,
-                                     &light};
-  if (cell->law->count && cell->alpha > 0) expect_local(&local, row, arena);
+  uint64_t n = row->series->n_iterations;
+  double r1 = sqrt(row->series->radius2[0].mean);
+  double *mean = arena_new(arena, double, (ptrdiff_t)n);
+  double *spread = arena_new(arena, double, (ptrdiff_t)n);
+  row->first_disc = expected_first_disc(scene, row->cell, row->probe, r1, *arena);
+  if (!expected_radius(scene, row->cell, row->probe, r1, 1, n, mean, *arena)) return;
+  expected_radius(scene, row->cell, row->probe, r1, 2, n, spread, *arena);
+  for (uint64_t j = 0; j < n; j++) {
+    double variance = spread[j] - mean[j] * mean[j];
+    spread[j] = variance > 0 ? sqrt(variance) : 0;
+  }
+  row->expected = mean, row->spread = spread;
 }
 
 static void test(struct radius_row *row) {

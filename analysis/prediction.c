@@ -1,15 +1,49 @@
 #include "analysis/prediction.h"
 
+#include "analysis/expected_radius.h"
 #include "analysis/receiver.h"
 
 #include <math.h>
 
-// Excess kurtosis of a mean of `photons` values with these raw moments.
-static double excess_kurtosis(const double m[PROFILE_MOMENTS], double photons) {
+// Of the mean of `photons` paths, from the raw moments of one: cumulants of the second to fourth
+// order.
+struct cumulants {
+  double second, third, fourth;
+};
+
+static struct cumulants cumulants_of(const double m[PROFILE_MOMENTS], double photons) {
   double variance = m[1] - m[0] * m[0];
-  if (variance == 0) return 0; // no photon, ever
+  double third = m[2] + m[0] * (2 * m[0] * m[0] - 3 * m[1]);
   double fourth = m[3] + m[0] * (-4 * m[2] + m[0] * (6 * m[1] - 3 * m[0] * m[0]));
-  return (fourth / (variance * variance) - 3) / photons;
+  return (struct cumulants){variance / photons, third / (photons * photons),
+                            (fourth - 3 * variance * variance) / (photons * photons * photons)};
+}
+
+struct iteration {
+  double divergent, rest, bias, kurtosis; // as in struct prediction
+};
+
+// Where the probe is in its pixel is drawn once for all photons of an iteration: variances add up,
+// the mean one at a place and that of the means.
+static struct iteration one_iteration(const struct profile *profile, double r, double photons) {
+  struct profile_view view[PROFILE_VIEWS];
+  struct iteration out = {0, 0, 0, 0};
+  int n = profile_views(profile, r, view);
+  for (int k = 0; k < n; k++) out.bias += view[k].weight * view[k].bias;
+  double mean = profile->exact + out.bias, square = 0, fourth = 0;
+  for (int k = 0; k < n; k++) {
+    const double *m = view[k].moment, weight = view[k].weight;
+    struct cumulants c = cumulants_of(m, photons);
+    double off = n > 1 ? m[0] - mean : 0, off2 = off * off;
+    out.divergent += weight * m[1] / photons;
+    out.rest += weight * (off2 - m[0] * m[0] / photons);
+    square += weight * c.second * c.second;
+    fourth += weight * (c.fourth + 4 * c.third * off + 6 * c.second * off2 + off2 * off2);
+  }
+  double variance = out.divergent + out.rest, variance2 = variance * variance;
+  if (n == 1) square = variance2;
+  if (variance2 > 0) out.kurtosis = (fourth + 3 * (square - variance2)) / variance2;
+  return out;
 }
 
 // A bias below the rounding of the quadrature (CHEBYSHEV_TERMS^2 products) is none; to see it would
@@ -20,14 +54,21 @@ static bool is_zero_bias(const double *bias, uint64_t n, double exact) {
   return largest <= 1e-12 * fabs(exact);
 }
 
-// At an edge nearer than 1 % of the last radius r the bias, half the light less 4 a / (pi r) of it
-// for the box, falls as r^0.03 at most: nobody measures that.
+// Nearer than 1 % of the last radius r an edge is where the probe is: the bias, half the light less
+// 4 a / (pi r) of it for the box, falls as r^0.03 at most, which nobody measures. That of a pixel
+// whose side the edge is differs by the square of it.
 static const double at_edge = 0.01;
 
-static enum bias_kind kind_of_bias(const struct profile *profile, double last_radius) {
+// The distances to the edge from lo to hi: places on both sides cancel if they are all there.
+static enum bias_kind kind_of_bias(const struct profile *profile, double first_radius,
+                                   double last_radius) {
+  double distance = profile->shadow.distance, spread = profile->spread;
+  double near = fabs(distance - spread), far = distance + spread;
   if (profile->shadow.shade == SHADE_NONE) return BIAS_SMOOTH;
-  if (profile->shadow.distance >= last_radius) return BIAS_ENDS;
-  return profile->shadow.distance < at_edge * last_radius ? BIAS_EDGE : BIAS_STAYS;
+  if (near >= last_radius) return BIAS_ENDS;
+  if (near >= at_edge * last_radius) return BIAS_STAYS;
+  if (spread == 0) return BIAS_EDGE;
+  return far >= first_radius ? BIAS_SIDE : BIAS_STAYS;
 }
 
 static uint64_t count_biased(const double *bias, uint64_t n) {
@@ -45,13 +86,13 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   double *kurtosis = arena_new(arena, double, (ptrdiff_t)n);
   double *richardson = arena_new(arena, double, (ptrdiff_t)n);
   for (uint64_t j = 0; j < n; j++) {
-    double r = radius * sqrt(family->rho[j]), moment[PROFILE_MOMENTS];
-    for (int k = 0; k < PROFILE_MOMENTS; k++) moment[k] = profile_moment(profile, k + 1, r);
-    divergent[j] = moment[1] / photons;
-    rest[j] = -moment[0] * moment[0] / photons;
-    bias[j] = profile_bias(profile, r);
-    richardson[j] = 4.0 / 3 * (bias[j] - profile_bias(profile, r / 2));
-    kurtosis[j] = excess_kurtosis(moment, photons);
+    double r = radius * sqrt(family->rho[j]);
+    struct iteration here = one_iteration(profile, r, photons);
+    divergent[j] = here.divergent;
+    rest[j] = here.rest;
+    bias[j] = here.bias;
+    richardson[j] = 4.0 / 3 * (here.bias - one_iteration(profile, r / 2, photons).bias);
+    kurtosis[j] = here.kurtosis;
   }
   bool unbiased = is_zero_bias(bias, n, profile->exact);
   for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = richardson[j] = family->rho[j];
@@ -65,7 +106,7 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
       .independent = true,
       .unbiased = unbiased,
       .bias_kind =
-          unbiased ? BIAS_SMOOTH : kind_of_bias(profile, radius * sqrt(family->rho[n - 1])),
+          unbiased ? BIAS_SMOOTH : kind_of_bias(profile, radius, radius * sqrt(family->rho[n - 1])),
       .bias_end = count_biased(bias, n),
       .truth = profile->exact + emitted,
       .variance_coefficient = profile_roughness(profile) / (photons * radius * radius),
@@ -142,6 +183,17 @@ static double truth_at(const struct scene *scene, const struct cell *cell,
   return profile.exact + probe->emitted;
 }
 
+// Radii that follow the photons found: those expected of them stand for the law's.
+static struct family expected_family(const struct scene *scene, const struct cell *cell,
+                                     const struct probe *probe, const struct family *family,
+                                     struct arena *arena) {
+  struct family own = *family;
+  if (!cell->law->count) return own;
+  double *rho = arena_new(arena, double, (ptrdiff_t)family->n);
+  if (expected_radius(scene, cell, probe, cell->radius, 1, family->n, rho, *arena)) own.rho = rho;
+  return own;
+}
+
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {
@@ -149,8 +201,9 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
   struct prediction p;
   if (cell_radius_is_known(cell) &&
       profile_find(scene, cell, probe, cell->radius, *arena, &profile)) {
-    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted,
-                                family, arena);
+    struct family own = expected_family(scene, cell, probe, family, arena);
+    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted, &own,
+                                arena);
   } else {
     double truth = probe->reference, se = probe->reference_se;
     if (isnan(truth) && !cell_radius_is_known(cell))

@@ -14,7 +14,9 @@
 // How the bias of an iteration depends on its radius.
 enum bias_kind {
   BIAS_SMOOTH, // as r^2, and higher powers of it
-  BIAS_EDGE,   // not at all: the probe is at an edge of the light (theory 1.5)
+  BIAS_SIDE,   // as r: the side of the probe's pixel is an edge of the light, the bias the error
+               // integrated over one side of it (theory 5 iv)
+  BIAS_EDGE,   // not at all: the probe is at an edge (theory 1.5)
   BIAS_ENDS,   // it is none from iteration bias_end + 1 on: the discs are clear of an edge
   BIAS_STAYS,  // the last disc still reaches across an edge, and no power describes it
 };
@@ -31,9 +33,10 @@ struct prediction {
   struct family family;
   const char *why_not; // why nothing is fitted although theory knows all; or NULL
   bool closed_form;
-  bool independent; // of each other; else radii follow the photons found, the law holds in
-                    // expectation, and exponents are predicted but constants are not (theory 2.4)
-  bool unbiased;    // theory's bias is zero for every radius
+  bool independent; // of each other; else radii follow the photons found, are those expected in
+                    // closed form, else the law's, and exponents are predicted but constants are
+                    // not (theory 2.4)
+  bool unbiased; // theory's bias is zero for every radius
   enum bias_kind bias_kind;
   uint64_t bias_end;           // of BIAS_ENDS: iterations that have a bias
   double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against

@@ -1,5 +1,6 @@
 #include "analysis/profile.h"
 
+#include "analysis/footprint.h"
 #include "analysis/mirror.h"
 #include "analysis/receiver.h"
 #include "analysis/special.h"
@@ -55,8 +56,7 @@ static bool circle_mean(const struct neighbourhood *at, double distance, double 
 
 static bool light_is_alone(const struct scene *scene, const struct cell *cell) {
   return scene->n_lights == 1 && scene->light[0].type->closed_form &&
-         cell->direct == DIRECT_PHOTONS && !cell->left_out && !cell->footprint &&
-         cell->integrator->photons;
+         cell->direct == DIRECT_PHOTONS && !cell->left_out && cell->integrator->photons;
 }
 
 // The shadow's edge is where the density falls to nothing: elsewhere it must be the same.
@@ -96,17 +96,36 @@ static bool find_way(struct neighbourhood *at, const struct cell *cell, double r
   return at->mirrored || find_shadow(at, direct_only, radius, scratch, shadow);
 }
 
+// In uniform light, of a pixel with a side along the edge.
+static bool find_footprint(const struct neighbourhood *at, const struct cell *cell,
+                           const struct probe *probe, double *reach, struct arena scratch,
+                           struct ring_mean *ring) {
+  struct footprint footprint;
+  if (!footprint_find(at->scene, probe, &footprint)) return false;
+  for (int k = 0; k < 2; k++) *reach += vec_length(footprint.side[k]);
+  if (!find_shadow(at, cell->depth <= 1, *reach, scratch, &ring->shadow)) return false;
+  if (ring->shadow.distance == INFINITY) return true;
+  double along[2];
+  for (int k = 0; k < 2; k++) along[k] = fabs(vec_dot(footprint.side[k], ring->shadow.across));
+  ring->spread = fmax(along[0], along[1]);
+  return fmin(along[0], along[1]) <= 1e-6 * ring->spread;
+}
+
 bool ring_mean_find(const struct scene *scene, const struct cell *cell, const struct probe *probe,
                     double radius, struct arena scratch, struct ring_mean *ring) {
   if (!probe->hit || !light_is_alone(scene, cell)) return false;
   struct neighbourhood at = {
       .scene = scene, .light = &scene->light[0], .p = probe->p, .n = probe->n};
   vec_basis(at.n, &at.s, &at.t);
-  ring->shadow = (struct half_shadow){SHADE_NONE, INFINITY};
-  if (!find_way(&at, cell, radius, scratch, &ring->shadow)) return false;
+  ring->shadow = (struct half_shadow){.shade = SHADE_NONE, .distance = INFINITY};
+  ring->spread = 0;
+  double reach = radius;
+  if (cell->footprint ? !find_footprint(&at, cell, probe, &reach, scratch, ring)
+                      : !find_way(&at, cell, radius, scratch, &ring->shadow))
+    return false;
   struct light_closed_form form;
-  if (!form_at(&at, at.p, &form) || !(form.clear_radius > radius)) return false;
-  if (!(receiver_clearance(scene, probe->p, probe->n, scratch) > radius)) return false;
+  if (!form_at(&at, at.p, &form) || !(form.clear_radius > reach)) return false;
+  if (!(receiver_clearance(scene, probe->p, probe->n, scratch) > reach)) return false;
 
   double flux[3];
   for (int c = 0; c < 3; c++) {
@@ -154,12 +173,38 @@ static void kernel_means(const struct kernel_rule *rule, const struct ring_mean 
   }
 }
 
+// The distance to the edge, negative in the dark, is between these.
+static void edge_range(const struct profile *profile, double *lo, double *hi) {
+  double distance = profile->shadow.distance;
+  if (profile->shadow.shade == SHADE_DARK) distance = -distance;
+  *lo = distance - profile->spread, *hi = distance + profile->spread;
+}
+
+static double lit_share(const struct profile *profile) {
+  double lo, hi;
+  edge_range(profile, &lo, &hi);
+  return profile->shadow.shade == SHADE_NONE || lo >= 0 ? 1 : hi <= 0 ? 0 : hi / (hi - lo);
+}
+
+// Near the rim of a kernel what is beyond goes as (1 - t)^(3/2) and higher powers.
+static void tabulate_beyond(struct profile *profile) {
+  double value[CHEBYSHEV_TERMS];
+  for (int j = 0; j < PROFILE_MOMENTS; j++) {
+    for (int k = 0; k < CHEBYSHEV_TERMS; k++) {
+      double s = chebyshev_node(1, k);
+      value[k] = shadow_beyond(profile->kernel, j + 1, 1 - s * s);
+    }
+    profile->beyond[j] = chebyshev_fit(1, value);
+  }
+}
+
 struct profile profile_new(const struct ring_mean *ring, const struct kernel *kernel,
                            double radius) {
   struct kernel_rule rule = kernel_rule_new(kernel);
   double hi = radius * radius, centre = chebyshev_value(&ring->density, 0);
-  struct profile profile = {.flux = ring->flux, .kernel = kernel, .shadow = ring->shadow};
-  if (ring->shadow.shade != SHADE_DARK) profile.exact = ring->flux * centre;
+  struct profile profile = {
+      .flux = ring->flux, .kernel = kernel, .shadow = ring->shadow, .spread = ring->spread};
+  profile.exact = ring->flux * centre * lit_share(&profile);
   double mean[CHEBYSHEV_TERMS][PROFILE_MOMENTS], value[CHEBYSHEV_TERMS];
   for (int m = 0; m < CHEBYSHEV_TERMS; m++)
     kernel_means(&rule, ring, centre, chebyshev_node(hi, m), mean[m]);
@@ -168,6 +213,7 @@ struct profile profile_new(const struct ring_mean *ring, const struct kernel *ke
     profile.moment[j] = chebyshev_fit(hi, value);
   }
   if (ring->shadow.shade != SHADE_NONE) profile.density = centre;
+  if (ring->spread > 0) tabulate_beyond(&profile);
   return profile;
 }
 
@@ -182,7 +228,9 @@ bool profile_find(const struct scene *scene, const struct cell *cell, const stru
 
 // What the half of the disc beyond the edge holds when it is lit, over flux^j and r^-2(j-1).
 static double beyond(const struct profile *profile, int j, double r) {
-  return profile->density * shadow_beyond(profile->kernel, j, profile->shadow.distance / r);
+  double t = profile->shadow.distance / r;
+  if (profile->spread == 0) return profile->density * shadow_beyond(profile->kernel, j, t);
+  return t < 1 ? profile->density * chebyshev_value(&profile->beyond[j - 1], sqrt(1 - t)) : 0;
 }
 
 double profile_bias(const struct profile *profile, double r) {
@@ -202,6 +250,55 @@ double profile_moment(const struct profile *profile, int j, double r) {
 }
 
 double profile_roughness(const struct profile *profile) {
-  if (profile->shadow.shade == SHADE_DARK) return 0;
-  return profile->flux * profile->flux * chebyshev_value(&profile->moment[1], 0);
+  return profile->flux * profile->flux * chebyshev_value(&profile->moment[1], 0) *
+         lit_share(profile);
+}
+
+// ---- places in the pixel ----
+
+// At this distance from the edge, negative in the dark.
+static struct profile_view view_at(const struct profile *profile, double distance, double weight,
+                                   double r) {
+  struct profile at = *profile;
+  at.shadow.shade = distance > 0 ? SHADE_LIT : SHADE_DARK;
+  at.shadow.distance = fabs(distance);
+  at.exact = distance > 0 ? at.flux * at.density : 0;
+  struct profile_view view = {.weight = weight, .bias = profile_bias(&at, r)};
+  for (int j = 0; j < PROFILE_MOMENTS; j++) view.moment[j] = profile_moment(&at, j + 1, r);
+  view.mean = at.exact;
+  return view;
+}
+
+// Distances from lo to hi on one side of the edge, of `range` in all: those within r of it, where t
+// = |distance| / r = 1 - s^2 makes them smooth in s, and those farther away, which are alike.
+static int views_of_side(const struct profile *profile, double lo, double hi, double range,
+                         double r, struct profile_view *view) {
+  int n = 0;
+  double sign = lo < 0 ? -1 : 1, near = sign > 0 ? lo : -hi, far = sign > 0 ? hi : -lo;
+  if (far > r) view[n++] = view_at(profile, sign * 2 * r, (far - fmax(near, r)) / range, r);
+  if (near >= r) return n;
+  double x[PROFILE_NODES], weight[PROFILE_NODES];
+  double from = sqrt(1 - fmin(far / r, 1)), to = sqrt(1 - near / r);
+  special_gauss_legendre(PROFILE_NODES, x, weight);
+  for (int k = 0; k < PROFILE_NODES; k++) {
+    double s = from + (to - from) * x[k];
+    view[n++] =
+        view_at(profile, sign * r * (1 - s * s), (to - from) * weight[k] * 2 * s * r / range, r);
+  }
+  return n;
+}
+
+int profile_views(const struct profile *profile, double r,
+                  struct profile_view view[PROFILE_VIEWS]) {
+  double lo, hi;
+  edge_range(profile, &lo, &hi);
+  if (profile->spread == 0) {
+    view[0] = (struct profile_view){1, profile_bias(profile, r), profile->exact, {0}};
+    for (int j = 0; j < PROFILE_MOMENTS; j++) view[0].moment[j] = profile_moment(profile, j + 1, r);
+    return 1;
+  }
+  int n = 0;
+  if (hi > 0) n += views_of_side(profile, fmax(lo, 0), hi, hi - lo, r, view);
+  if (lo < 0) n += views_of_side(profile, lo, fmin(hi, 0), hi - lo, r, view + n);
+  return n;
 }

@@ -20,6 +20,7 @@ struct ring_mean {
   double flux; // luminance per photon
   struct chebyshev density;
   struct half_shadow shadow;
+  double spread; // the distance to the edge is uniform, by as much as this: a pixel's footprint
 };
 
 // False: there is no closed form for this probe within `radius`.
@@ -32,7 +33,8 @@ struct profile {
   // In r^2, without the shadow: that function, for j = 1 less its limit.
   struct chebyshev moment[PROFILE_MOMENTS];
   struct half_shadow shadow; // of a half-plane, where the density of photons is this
-  double density;
+  double density, spread;
+  struct chebyshev beyond[PROFILE_MOMENTS]; // of a spread: shadow_beyond in sqrt(1 - distance)
   const struct kernel *kernel;
 };
 struct profile profile_new(const struct ring_mean *, const struct kernel *, double radius);
@@ -41,7 +43,17 @@ struct profile profile_new(const struct ring_mean *, const struct kernel *, doub
 bool profile_find(const struct scene *, const struct cell *, const struct probe *, double radius,
                   struct arena scratch, struct profile *);
 
-// E[Y^j], j = 1..PROFILE_MOMENTS, radiance^j.
+// What is random from iteration to iteration beside the photons: where in its pixel the probe is. A
+// view is a place, or many that are alike.
+enum { PROFILE_NODES = 16, PROFILE_VIEWS = 2 * PROFILE_NODES + 2 };
+struct profile_view {
+  double weight; // they sum to 1
+  double bias, mean,
+      moment[PROFILE_MOMENTS]; // of E[Y] there: less its limit, and that of all places
+};
+int profile_views(const struct profile *, double r, struct profile_view[PROFILE_VIEWS]);
+
+// At the probe itself: E[Y^j], j = 1..PROFILE_MOMENTS, radiance^j.
 double profile_moment(const struct profile *, int j, double r);
 // E[Y] at r less its limit, without their cancellation.
 double profile_bias(const struct profile *, double r);

@@ -116,12 +116,14 @@ bool shadow_find(const struct scene *scene, struct vec p, struct vec n, struct v
   bool dark = is_dark(&blockers, p);
   if (!is_half_plane(&blockers, &rays.receiver, radius, found, dark)) return false;
   if (!found) {
-    *shadow = (struct half_shadow){dark ? SHADE_DARK : SHADE_NONE, INFINITY};
+    *shadow = (struct half_shadow){.shade = dark ? SHADE_DARK : SHADE_NONE, .distance = INFINITY};
     return true;
   }
-  double to_edge = vec_length(vec_sub(foot(p, found), p));
-  *shadow = (struct half_shadow){dark ? SHADE_DARK : SHADE_LIT, to_edge};
-  return true;
+  struct vec to_edge = vec_sub(foot(p, found), p);
+  *shadow = (struct half_shadow){.shade = dark ? SHADE_DARK : SHADE_LIT,
+                                 .distance = vec_length(to_edge),
+                                 .across = vec_normalize(to_edge)};
+  return shadow->distance > 0;
 }
 
 // ---- kernels across it ----

@@ -17,7 +17,8 @@ enum shade {
 
 struct half_shadow {
   enum shade shade;
-  double distance; // from the probe to the edge
+  double distance;   // from the probe to the edge
+  struct vec across; // and the direction, of unit length
 };
 
 // What keeps parallel light, that comes from direction wi over `distance`, from the disc of this

@@ -1,8 +1,8 @@
 #!/bin/bash
-# experiments/parallel.sh PHOTONLAB RESULTS QUALITY, of the Makefile: parallel.yaml and two pictures by
-# 1, 2, ... threads, once a repetition and in another order in each, so that whatever else the machine
-# does falls on all alike. Every time is that of a whole command. Other bytes than by all threads are
-# an error. Leaves RESULTS/threads.csv; interrupted, it goes on with the next measurement.
+# experiments/parallel.sh PHOTONLAB RESULTS QUALITY, of the Makefile: parallel.yaml and two pictures
+# by 1, 2, ... threads, once a repetition and in another order in each, so that whatever else the
+# machine does falls on all alike. Every time is that of a whole command. Other bytes than by all
+# threads are an error. Leaves RESULTS/threads.csv; interrupted, it goes on with the next measurement.
 set -eu
 photonlab=$1 results=$2 quality=$3
 scene=scenes/cornell-box.pbrt radius=0.1
@@ -21,10 +21,11 @@ mkdir -p "$scratch"
 sizes=$(for ((n = 1; n <= cores; n += n < 4 ? 1 : n)); do echo "$n"; done; echo "$cores")
 mapfile -t counts < <(sort -nu <<<"$sizes")
 
-# What is measured, by how many threads, to where. sppm's iterations follow each other, all threads at
-# work on each; those of probabilistic are computed side by side.
+# What is measured, by how many threads, to where. sppm's iterations follow each other, all threads
+# at work on each; those of probabilistic are computed side by side.
 experiment() {
-  "$photonlab" run experiments/parallel.yaml --quality "$quality" --quiet --threads "$1" -o "$2" >"$2.out"
+  "$photonlab" run experiments/parallel.yaml --quality "$quality" --quiet --threads "$1" \
+    -o "$2" >"$2.out"
 }
 probabilistic() { picture probabilistic "$@"; }
 sppm() { picture sppm "$@"; }

@@ -77,9 +77,8 @@ do for [terminal_name in "pdf svg png"] {
   do for [panel = 1:3] {
     set lmargin at screen (0.5 + 2.37 * (panel - 1)) / paper_x
     set rmargin at screen (0.5 + 2.37 * (panel - 1) + 1.88) / paper_x
-    set title word("'photons held at once [bytes]' 'relative error of the picture' 'relative error of the picture'", \
-      panel) offset 0,-0.6
-    set xlabel word("'photons emitted in all' 'photons emitted in all' 'photons held at once [bytes]'", panel) offset 0,0.5
+    set title panel == 1 ? "photons held at once [bytes]" : "relative error of the picture" offset 0,-0.6
+    set xlabel panel == 3 ? "photons held at once [bytes]" : "photons emitted in all" offset 0,0.5
     if (panel == 1) { set yrange [5e4:5e8]; set format y "10^{%T}"; set ytics auto }
     if (panel > 1) {
       set yrange [least / 1.25:largest * 1.25]
@@ -104,10 +103,10 @@ do for [terminal_name in "pdf svg png"] {
   set xrange [0:1]
   set yrange [0:1]
   set key center center samplen 2 maxrows 2 width -1
-  set label 1 "error: root mean square over pixels against path tracing, by the mean; bytes: photons and the grids that find them," \
-    at screen 0.5,0.085 center textcolor "#444444" font ",7"
-  set label 2 "of which ppm and sppm have one for each factor of two in radius; symbols that would cover each other stand side by side" \
-    at screen 0.5,0.035 center textcolor "#444444" font ",7"
+  set label 1 "error: root mean square over pixels against path tracing, by the mean; bytes: ".\
+    "photons and the grids that find them," at screen 0.5,0.085 center textcolor "#444444" font ",7"
+  set label 2 "of which ppm and sppm have one for each factor of two in radius; symbols that would ".\
+    "cover each other stand side by side" at screen 0.5,0.035 center textcolor "#444444" font ",7"
   entry(s) = s == 1 ? "one map of all photons" : s == 0 ? " " : \
     system(sprintf("echo %s an iteration | sed 's/:/, /'", word(series, s)))
   plot for [s in "1 0 2 5 3 6 4 7"] NaN with linespoints linewidth 0.9 pointtype (s > 0 ? shape(int(s)) : -2) \

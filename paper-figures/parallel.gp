@@ -15,7 +15,8 @@ if (system("mkdir -p ".quoted(results."/figures")." && echo made") ne "made") {
   exit status 1
 }
 kinds = "experiment probabilistic sppm"
-titles = "'an experiment: runs side by side' 'a picture, probabilistic: iterations side by side' 'a picture, sppm: one iteration after another'"
+titles = "'an experiment: runs side by side' 'a picture, probabilistic: iterations side by side' ".\
+  "'a picture, sppm: one iteration after another'"
 n_kinds = words(kinds)
 field(name) = system("tail -n +2 ".quoted(data)." | cut -d, -f".name." | sort -nu")
 counts = field("2"); most = int(word(counts, words(counts)))
@@ -35,7 +36,8 @@ do for [k = 1:n_kinds] {
     stats rows using 4 name "wall" nooutput
     stats rows using 5 name "cpu" nooutput
     if (wall_records != repetitions) {
-      print sprintf("%s: %d repetitions of %s by %s threads, not %d", data, wall_records, word(kinds, k), n, repetitions)
+      print sprintf("%s: %d repetitions of %s by %s threads, not %d", data, wall_records, \
+        word(kinds, k), n, repetitions)
       exit status 1
     }
     if (n eq "1") { wall1[k] = wall_median; cpu1[k] = cpu_median }
@@ -112,11 +114,12 @@ do for [terminal_name in "pdf svg png"] {
   set tmargin at screen 0.34
   set bmargin at screen 0.13
   set key center center samplen 2.2 maxcols 1
-  set label 1 sprintf("medians and ranges of %d interleaved repetitions; filled: wall clock, t_1 / (n t_n); hollow: CPU seconds of 1 thread / those of n; dashed: ideal", \
+  set label 1 sprintf("medians and ranges of %d interleaved repetitions; filled: wall clock, ".\
+    "t_1 / (n t_n); hollow: CPU seconds of 1 thread / those of n; dashed: ideal", \
     repetitions) at screen 0.5,0.095 center textcolor "#444444" font ",7"
-  set label 2 sprintf("%s, %d core%s; load average before the measurements: %s to %s; log and images are the same bytes", \
-    machine, cores, cores == 1 ? "" : "s", word(loads, 1), word(loads, words(loads))) at screen 0.5,0.045 center \
-    textcolor "#444444" font ",7" noenhanced
+  set label 2 sprintf("%s, %d core%s; load average before the measurements: %s to %s; ".\
+    "log and images are the same bytes", machine, cores, cores == 1 ? "" : "s", word(loads, 1), \
+    word(loads, words(loads))) at screen 0.5,0.045 center textcolor "#444444" font ",7" noenhanced
   plot [0:1] [0:1] for [k = 1:n_kinds] NaN with linespoints linewidth 0.8 pointtype full(k) \
     linecolor rgb colour(k) title word(titles, k)
   unset label

@@ -46,7 +46,7 @@ add 'a reference radius is one file' src/estimate/reference_radius.c \
   add_row "$templates/reference_radius.c" src/estimate/reference_radius.c
 add 'an integrator is one file' src/integrator/chance.c \
   cp "$templates/integrator.c" src/integrator/chance.c
-tests_over_tables=("$built"/tests/{unit/kernel,unit/law,unit/predict,statistical/reference_radius,statistical/views})
+tests_over_tables=("$built"/tests/{unit/{kernel,law,predict},statistical/{reference_radius,views}})
 check 'all of it builds' make INSTALL=no -j2 "$photonlab" "${tests_over_tables[@]}"
 
 # By hand: integrals of t (1 - t^4), t^3 (1 - t^4) and t (1 - t^4)^2 over [0, 1] are 1/3, 1/8, 2/15,
@@ -121,8 +121,9 @@ check "the law's radius at i = 7 and alpha = 1/2 is that of rho = 1/2" awk '
   NR == 7 { print; exit !(($2 / 0.7) ^ 2 - 0.5 < 1e-12 && 0.5 - ($2 / 0.7) ^ 2 < 1e-12) }' \
   <(of 1 i radius)
 agrees() { # agrees CELL: variance and bias, rates and coefficients
-  awk -v cell="$1" '$1 == cell { n++; good += $NF == "agree"; print } END { exit !(n == 2 && good == 2) }' \
-    <("$photonlab" fit "$scratch/toys")
+  awk -v cell="$1" '
+    $1 == cell { n++; good += $NF == "agree"; print }
+    END { exit !(n == 2 && good == 2) }' <("$photonlab" fit "$scratch/toys")
 }
 check 'the fit agrees with theory of the kernel' agrees 0
 check 'the fit agrees with theory of the law' agrees 1

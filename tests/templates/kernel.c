@@ -1,10 +1,10 @@
 // A kernel, here 1 - t^4 at t = distance / radius. The functions go into src/density/kernel.c above
-// its table, the row at the end of the table; nothing else knows of it. Then `make validate` compares
-// the closed forms with quadrature, and an experiment may say `kernel: quartic`.
+// its table, the row at the end of the table; nothing else knows of it. Then `make validate`
+// compares the closed forms with quadrature, and an experiment may say `kernel: quartic`.
 
 // ---- 1 - t^4 ----
-// psi(u) / psi(0) at |u|^2 = t2[j] in [0, 1): 1 at the centre, nowhere rising, nowhere 0. Only + - *
-// / sqrt and numeric/elementary.h (num_exp, ...): libm has other bits on other machines.
+// psi(u) / psi(0) at |u|^2 = t2[j] in [0, 1): 1 at the centre, nowhere rising, nowhere 0. Only
+// + - * / sqrt and numeric/elementary.h (num_exp, ...): libm has other bits on other machines.
 static void quartic_shape(const double *t2, double *w, int n) {
   for (int j = 0; j < n; j++) w[j] = 1 - t2[j] * t2[j];
 }

@@ -214,6 +214,77 @@ static void test_rates(void **state) {
   assert_true(p.truth == 0);
 }
 
+// ---- pixels ----
+
+static struct prediction predict_pixel(const char *kernel, struct probe probe, double radius,
+                                       uint64_t n) {
+  struct scene *scene = arena_new(&arena, struct scene, 1);
+  struct problem problem = {0};
+  if (!scene_read("scenes/plane-shadow-edge-pixel.pbrt", &arena, scene, &problem))
+    fail_msg("%s", problem.text);
+  struct cell cell = cell_of(kernel, radius);
+  cell.footprint = true;
+  struct family_table *table = arena_new(&arena, struct family_table, 1);
+  *table = family_table_new(cell.law, n, &arena);
+  struct family family = family_new(table, cell.alpha, &arena);
+  return prediction_new(scene, &cell, &probe, &family, &arena);
+}
+
+static struct probe pixel_at(int x) {
+  struct probe probe = probe_at(0.375 * (1.5 - x), 0);
+  probe.x = x, probe.y = 1;
+  return probe;
+}
+
+// All lit with its side on the edge: the bias is -E_0 r E|u_1| / (2 w).
+static void test_side(void **state) {
+  (void)state;
+  const struct {
+    const char *kernel;
+    double first;
+  } theory[] = {{"box", 4 / (3 * 3.141592653589793)}, {"epanechnikov", .33953055}};
+  for (int k = 0; k < 2; k++) {
+    struct prediction p = predict_pixel(theory[k].kernel, pixel_at(2), 0.3, 500);
+    assert_true(p.closed_form);
+    assert_int_equal(p.bias_kind, BIAS_SIDE);
+    assert_near(bias_theory_rate(&p), 1.0 / 6, 1e-12);
+    assert_near(p.truth, 1 / pi, 1e-7);
+    for (int j = 0; j < 500; j += 71) {
+      double r = 0.3 * sqrt(p.family.rho[j]);
+      assert_near(p.bias[j], -theory[k].first * r / (2 * 0.375) / pi, 2e-6); // the edge's 2^-20
+    }
+  }
+  // The dark one has what this one lacks; the next has no bias at all.
+  struct prediction dark = predict_pixel("box", pixel_at(1), 0.3, 10);
+  assert_near(dark.bias[0], 4 / (3 * pi) * 0.3 / (2 * 0.375) / pi, 2e-6);
+}
+
+// Mean, variance and kurtosis of an iteration, as sums over places in steps: given the place, a
+// box's counts are binomial.
+static void test_pixel_moments(void **state) {
+  (void)state;
+  enum { STEPS = 100000 };
+  const double r = 0.3, n = 1000, share = r * r; // of the beam's photons that a lit disc has
+  struct prediction p = predict_pixel("box", pixel_at(2), r, 3);
+  double one = 0, central[5] = {0};
+  for (int pass = 0; pass < 2; pass++)
+    for (int k = 0; k < STEPS; k++) {
+      double a = 0.375 * (k + 0.5) / STEPS, q = share * (a < r ? 1 - box_beyond(a / r) : 1);
+      double mean = n * q, second = n * q * (1 - q), third = second * (1 - 2 * q);
+      double fourth = second * (1 + 3 * (n - 2) * q * (1 - q)), off = mean - one;
+      if (pass == 0)
+        one += mean / STEPS;
+      else {
+        central[2] += (second + off * off) / STEPS;
+        central[4] += (fourth + 4 * third * off + 6 * second * off * off + pow(off, 4)) / STEPS;
+      }
+    }
+  double unit = 1 / (n * pi * r * r); // irradiance a photon of the disc stands for
+  assert_near(p.truth + p.bias[0], one * unit, 1e-6);
+  assert_near((p.divergent[0] + p.rest[0]) / (unit * unit * central[2]), 1, 1e-4);
+  assert_near(p.kurtosis[0], central[4] / (central[2] * central[2]) - 3, 1e-4);
+}
+
 // N times the average's bias at rate beta is S (N / m)^(1 - beta); slopes by difference quotients.
 static void test_family(void **state) {
   (void)state;
@@ -245,6 +316,9 @@ int main(void) {
       {"corners, strips, holes, what scatters and what varies have no closed form", test_refusals,
        0, 0, 0},
       {"the rate is 0 at the edge and 1 where the discs come clear of it", test_rates, 0, 0, 0},
+      {"in a pixel with its side on the edge the bias is theory's L1 and falls as r", test_side, 0,
+       0, 0},
+      {"a pixel's moments are those of its places", test_pixel_moments, 0, 0, 0},
       {"the bias tilts as its rate says", test_family, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("predict_edge", tests, NULL, NULL);
