@@ -193,7 +193,7 @@ do for [terminal_name in "pdf svg png"] {
   # ---- and light that varies ----
   set lmargin at screen left(4)
   set rmargin at screen right(4)
-  set title "the same, where light varies" offset 0,-0.7
+  set title "hachisuka, where light varies, %" offset 0,-0.7
   set yrange [-12:3]
   set ytics -10,5
   set key bottom left reverse Left maxrows 6 title ""
