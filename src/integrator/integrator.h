@@ -18,6 +18,7 @@ struct integrator_type {
                     // i = 1, 2, ... after begin
   const char *law; // the default; NULL: knaus-zwicker
   bool one_eye_pass; // eye points are drawn once a run and stay
+  bool blind_to_mirrored; // leaves out surfaces seen in mirrors and through clear glass
   bool takes_reference; // reference radii other than global
   bool takes_k;         // the k nearest photons instead of a radius
   bool fixed;           // all iterations have the same radius: no law but fixed

@@ -246,6 +246,7 @@ const struct integrator_type integrator_light = {
     .source = "Arvo 1986; Dutre, Lafortune and Willems 1993",
     .photons = false,
     .independent = true,
+    .blind_to_mirrored = true,
     .accepts = light_accepts,
     .create = light_new,
     .begin = light_begin,

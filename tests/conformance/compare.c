@@ -13,6 +13,29 @@ struct estimate estimate_of(const double *value, int n) {
   return (struct estimate){.mean = mean, .se2 = m2 / (n - 1) / n, .dof = n - 1};
 }
 
+struct estimate estimate_extended(struct estimate first, int n, double mean_of_more, int more) {
+  double share = (double)n / (n + more);
+  first.mean = share * first.mean + (1 - share) * mean_of_more;
+  first.se2 *= share;
+  return first;
+}
+
+struct estimate estimate_weighted(const struct estimate *part, const double *weight, int n) {
+  struct estimate out = {0};
+  double total = 0, fourths = 0;
+  for (int k = 0; k < n; k++) total += weight[k];
+  for (int k = 0; k < n; k++) {
+    double share = weight[k] / total, se2 = share * share * part[k].se2;
+    if (share == 0) continue;
+    out.mean += share * part[k].mean;
+    out.rounding += share * part[k].rounding;
+    out.se2 += se2;
+    fourths += se2 * se2 / part[k].dof;
+  }
+  out.dof = fourths > 0 ? out.se2 * out.se2 / fourths : 1;
+  return out;
+}
+
 struct estimate estimate_pooled(const double *mean, const double *se, int n, double dof) {
   struct estimate out = {.dof = dof};
   double squares = 0, fourths = 0;
@@ -60,6 +83,13 @@ double compare_power(struct estimate a, struct estimate b, double shift, double 
   double missing = critical - excess / sqrt(se2); // standard errors that chance has to add
   double tail = special_two_sided(missing) / 2;
   return missing > 0 ? tail : 1 - tail;
+}
+
+double compare_smallest(struct estimate a, struct estimate b, double threshold, double power) {
+  double se2 = a.se2 + b.se2, rounding = a.rounding + b.rounding;
+  if (se2 == 0) return rounding;
+  double critical = special_t_quantile(special_two_sided(threshold) / 2, welch_dof(a, b));
+  return rounding + sqrt(se2) * (critical + special_normal_quantile(1 - power));
 }
 
 // ---- regions of images ----

@@ -13,6 +13,15 @@ struct estimate {
 // The mean of n independent values.
 struct estimate estimate_of(const double *value, int n);
 
+// The mean of `n` values and of `more` further ones, where the number of these was chosen by the
+// variance of the first n: that variance, and no other, makes the difference Student's t (Stein
+// 1945), since it is independent of both means.
+struct estimate estimate_extended(struct estimate first, int n, double mean_of_more, int more);
+
+// The mean of n independent estimates with weights that know nothing of them (Satterthwaite's
+// degrees of freedom, as below). Estimates of weight 0 may be unset.
+struct estimate estimate_weighted(const struct estimate *, const double *weight, int n);
+
 // The mean of n independent measurements, each with a standard error of `dof` degrees of freedom.
 // The sum of their squares is worth (sum se^2)^2 / sum (se^4 / dof) of them (Satterthwaite 1946).
 struct estimate estimate_pooled(const double *mean, const double *se, int n, double dof);
@@ -32,6 +41,9 @@ double compare_threshold(double level, long tests);
 
 // Probability that |compare_z| exceeds the threshold when a is off by `shift`.
 double compare_power(struct estimate a, struct estimate b, double shift, double threshold);
+
+// The shift that exceeds it with this probability, in (1/2, 1).
+double compare_smallest(struct estimate a, struct estimate b, double threshold, double power);
 
 // ---- regions of images ----
 

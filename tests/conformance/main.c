@@ -85,12 +85,12 @@ int main(int argc, char **argv) {
   }
   const char *output = getenv("CMOCKA_MESSAGE_OUTPUT");
   struct report report = {.tap = output && !strcmp(output, "TAP")};
-  struct path_result result[sizeof conformance_scenes / sizeof *conformance_scenes] = {{0}};
-  if (access(options.conformance, R_OK) == 0) {
-    paths_check(&options, &report, result);
-    photons_check(&options, &report, result);
-  } else
+  bool conformance = access(options.conformance, R_OK) == 0;
+  if (conformance)
+    paths_check(&options, &report);
+  else
     report_line(&report, SKIPPED, "there is no %s", options.conformance);
+  agree_check(&options, &report, conformance);
   if (access(options.scenes, R_OK) == 0)
     others_check(&options, &report);
   else

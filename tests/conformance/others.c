@@ -9,19 +9,20 @@
 
 static const double margin = 0.01, limit = 4;
 
-// The largest radius is about two pixels wide, as in photons.c.
+// The largest radius is about two pixels wide, as in agree.c.
 struct other {
   const char *name;
   double radius;
 };
 static const struct other with_reference[] = {{"cornell-box", 0.037}, {"veach-bidir", 0.28}};
 
-static struct photon_plan plan_of(const struct options *options, double radius) {
-  return (struct photon_plan){.radius = radius,
-                              .n_emitted = options->full ? 25000 : 10000,
-                              .iterations = options->full ? 8 : 1,
-                              .runs = options->full ? 32 : 8,
-                              .purpose = "photons"};
+static struct runs_plan plan_of(const struct options *options, double radius) {
+  return (struct runs_plan){.type = integrator_find("probabilistic"),
+                            .radius = radius,
+                            .n_emitted = options->full ? 25000 : 10000,
+                            .iterations = options->full ? 8 : 1,
+                            .runs = options->full ? 32 : 8,
+                            .purpose = "photons"};
 }
 
 static void compare_means(struct report *report, const char *name, const char *how,
@@ -42,13 +43,15 @@ static void compare_with(const struct options *options, struct report *report,
                          const struct image *mean, const struct image *se, struct arena arena) {
   enum { BATCHES = 16 };
   struct region all = {0, 0, mean->width, mean->height};
-  struct estimate theirs = region_reference(mean, se, all, arena), photons[PHOTON_REGIONS];
+  struct estimate theirs = region_reference(mean, se, all, arena), photons[REGIONS];
+  struct regions regions = regions_of(subject, &arena);
+  struct runs_plan plan = plan_of(options, other->radius);
   struct batches batches =
       batches_render(subject, "others", BATCHES, options->full ? 32 : 1, &arena);
   compare_means(report, subject->name, "path", batches_region(&batches, all, 0, 1, arena), theirs,
                 batches.seconds);
   double begin = subject_seconds();
-  photons_extrapolate(subject, plan_of(options, other->radius), arena, photons);
+  runs_measure(subject, &regions, &plan, arena, photons);
   compare_means(report, subject->name, "photons", photons[0], theirs, subject_seconds() - begin);
   if (!options->always_pictures) return;
   struct image image = batches_mean(&batches, &arena);
@@ -89,17 +92,18 @@ static void check_water(const struct options *options, struct report *report, st
     refused(report, name, NULL, &problem);
     return;
   }
-  double begin = subject_seconds(), z[PHOTON_REGIONS];
-  struct estimate coarse[PHOTON_REGIONS], fine[PHOTON_REGIONS];
-  struct photon_plan plan = plan_of(options, 0.073);
+  double begin = subject_seconds(), z[AREAS];
+  struct estimate coarse[REGIONS], fine[REGIONS];
+  struct regions regions = regions_of(subject, &arena);
+  struct runs_plan plan = plan_of(options, 0.073);
   if (options->full) plan.iterations = 2; // thousands of photons a disc where the water focuses
-  photons_extrapolate(subject, plan, arena, coarse);
+  runs_measure(subject, &regions, &plan, arena, coarse);
   plan.radius *= 0.6;
   plan.n_emitted *= 2;
   plan.purpose = "fine";
-  photons_extrapolate(subject, plan, arena, fine);
+  runs_measure(subject, &regions, &plan, arena, fine);
   bool passed = true;
-  for (int r = 0; r < PHOTON_REGIONS; r++) {
+  for (int r = 0; r < AREAS; r++) {
     z[r] = compare_z(coarse[r], fine[r]);
     passed &= fabs(z[r]) < limit;
   }

@@ -1,9 +1,9 @@
-// The three parts of the conformance test.
+// The parts of the conformance test.
 #ifndef TESTS_CONFORMANCE_PARTS_H
 #define TESTS_CONFORMANCE_PARTS_H
 
 #include "tests/conformance/report.h"
-#include "tests/conformance/subject.h"
+#include "tests/conformance/runs.h"
 
 // Where the reference itself is known to be too bright: the truth is between (1 - excess) of it and
 // all of it.
@@ -26,17 +26,11 @@ struct options {
   bool always_pictures;
 };
 
-// What path tracing found in a scene, for photons to agree with.
-struct path_result {
-  bool rendered;
-  struct estimate region[PHOTON_REGIONS];
-};
+// Path tracing against pbrt-v4's images.
+void paths_check(const struct options *, struct report *);
 
-// Path tracing against pbrt-v4's images. result[] runs with conformance_scenes.
-void paths_check(const struct options *, struct report *, struct path_result *result);
-
-// Photons extrapolated to radius zero against path tracing.
-void photons_check(const struct options *, struct report *, const struct path_result *result);
+// All integrators against each other; pbrt-v4's scenes if they are there, and our own.
+void agree_check(const struct options *, struct report *, bool conformance);
 
 // Scenes by others: image means only, or the integrator against itself.
 void others_check(const struct options *, struct report *);

@@ -14,8 +14,14 @@ struct subject {
 bool subject_load(const char *name, const char *path, struct arena *, struct subject *,
                   struct problem *);
 
+// Of a name, so that the means of different purposes and numbers are independent.
+uint64_t subject_seed(const struct subject *, const char *purpose, int number,
+                      struct arena scratch);
+
+void subject_stop_if_interrupted(void); // the process ends
+
 // ---- path tracing ----
-// Batches have seeds of their own, hashed from names, so that their means are independent.
+// Batches have seeds of their own.
 struct batches {
   int n;
   uint64_t samples; // a pixel, over all batches
@@ -31,23 +37,6 @@ struct image batches_mean(const struct batches *, struct arena *);
 // Over batches first, first + step, ...
 struct estimate batches_region(const struct batches *, struct region, int first, int step,
                                struct arena scratch);
-
-// ---- photons ----
-enum { PHOTON_REGIONS = 5 }; // the image and its quadrants
-
-struct photon_plan {
-  double radius;
-  uint64_t n_emitted, iterations; // of each run
-  int runs;
-  const char *purpose;
-};
-
-struct region photon_region(const struct subject *, int number);
-
-// Radius zero from radii r, r/2 and r/4 on the same photons: bias m1 r (edges) + m2 r^2 (inside)
-// cancels. Each run is extrapolated, so the error comes from the runs.
-void photons_extrapolate(const struct subject *, struct photon_plan, struct arena scratch,
-                         struct estimate out[PHOTON_REGIONS]);
 
 double subject_seconds(void); // of a clock that only goes forward
 
