@@ -17,6 +17,7 @@ static bool find(const struct scene *scene, const struct cell *cell, const struc
   struct ring_mean ring;
   if (cell->footprint) return false; // the first disc is anywhere in the pixel
   if (!ring_mean_find(scene, cell, probe, r1, scratch, &ring)) return false;
+  if (!(ring.flux > 0)) return false; // a black surface: nothing tells its photons
   *light = (struct light_in_disc){r1, profile_new(&ring, kernel_find("box"), r1)};
   return true;
 }
