@@ -53,14 +53,19 @@ double sums_plus(double alpha, uint64_t n) {
   return growth * expm1_ratio(alpha * growth);
 }
 
-double sums_direct(const struct law *law, double alpha, double p, uint64_t n) {
+// Over from < i <= to.
+static double direct(const struct law *law, double alpha, double p, uint64_t from, uint64_t to) {
   double sum = 0, lost = 0; // Neumaier: the rounding of each addition is kept
-  for (uint64_t i = 1; i <= n; i++) {
+  for (uint64_t i = from + 1; i <= to; i++) {
     double term = pow(law->rho(alpha, i), p), next = sum + term;
     lost += fabs(sum) >= fabs(term) ? (sum - next) + term : (term - next) + sum;
     sum = next;
   }
   return sum + lost;
+}
+
+double sums_direct(const struct law *law, double alpha, double p, uint64_t n) {
+  return direct(law, alpha, p, 0, n);
 }
 
 // The tail's primitive without its leading term, at w = n + (1 + alpha) / 2.
@@ -83,4 +88,59 @@ double sums_power(double alpha, double p, uint64_t n) {
   double leading = pow(w0, b + 1) * decades * expm1_ratio((b + 1) * decades); // also at b = -1
   double rest = tail_correction(b, e1, e2, w) - tail_correction(b, e1, e2, w0);
   return head + pow(tgamma(1 + alpha), -p) * (leading + rest);
+}
+
+// ---- any law ----
+
+enum { STEPS = 64, LEVELS = 5 }; // of a block: 64 steps, then every 2nd, 4th, 8th and 16th
+
+// Over from < i <= from + STEPS * step. Trapezoid sums with steps of h are a series in h^2 (Euler
+// and Maclaurin): extrapolated to h = 1 they are the sum over all integers. *error: what the
+// coarsest level still changed. Blocks that no more than double i leave less than 1e-14 of a power
+// of i.
+static double block_sum(const struct law *law, double alpha, double p, uint64_t from, uint64_t step,
+                        double *error) {
+  double term[STEPS + 1], level[LEVELS], h = (double)step;
+  for (int k = 0; k <= STEPS; k++) term[k] = pow(law->rho(alpha, from + (uint64_t)k * step), p);
+  double ends = (term[0] + term[STEPS]) / 2, before = 0;
+  for (int l = 0; l < LEVELS; l++) {
+    int stride = 1 << l;
+    double inside = 0;
+    for (int k = stride; k < STEPS; k += stride) inside += term[k];
+    level[l] = h * stride * (ends + inside);
+  }
+  for (int m = 1; m < LEVELS; m++) { // Neville, in (h / step)^2
+    before = level[0];
+    for (int l = 0; l + m < LEVELS; l++) {
+      double near = ldexp(1, 2 * l), far = ldexp(1, 2 * (l + m)), at = 1 / (h * h);
+      level[l] += (level[l + 1] - level[l]) * (at - near) / (far - near);
+    }
+  }
+  *error = fabs(level[0] - before);
+  return level[0] + (term[STEPS] - term[0]) / 2;
+}
+
+// Blocks are halved where rho is not smooth enough for them, down to those of single terms.
+static double sums_in_blocks(const struct law *law, double alpha, double p, uint64_t n) {
+  uint64_t at = 4 * STEPS;
+  if (n <= at) return sums_direct(law, alpha, p, n);
+  double sum = sums_direct(law, alpha, p, at), error;
+  while (n - at >= STEPS) {
+    uint64_t step = (n - at < at ? n - at : at) / STEPS;
+    double block = block_sum(law, alpha, p, at, step, &error);
+    while (step > 1 && error > 1e-12 * fabs(sum + block)) {
+      step /= 2;
+      block = block_sum(law, alpha, p, at, step, &error);
+    }
+    sum += block, at += STEPS * step;
+  }
+  return sum + direct(law, alpha, p, at, n);
+}
+
+double sums_law(const struct law *law, double alpha, double p, uint64_t n) {
+  if (p == 0) return (double)n;
+  if (law->rho != knaus_zwicker()->rho) return sums_in_blocks(law, alpha, p, n);
+  if (p == 1) return sums_plus(alpha, n);
+  if (p == -1) return sums_minus(alpha, n);
+  return sums_power(alpha, p, n);
 }
