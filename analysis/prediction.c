@@ -96,6 +96,9 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   }
   bool unbiased = is_zero_bias(bias, n, profile->exact);
   for (uint64_t j = 0; unbiased && j < n; j++) bias[j] = richardson[j] = family->rho[j];
+  double second, fourth;
+  bool smooth = profile_bias_terms(profile, &second, &fourth);
+  if (unbiased) smooth = true, second = fourth = 0;
   bool darkens = profile->shadow.shade == SHADE_DARK && !unbiased && divergent[n - 1] == 0;
   return (struct prediction){
       .d = 2,
@@ -111,6 +114,8 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
       .truth = profile->exact + emitted,
       .variance_coefficient = profile_roughness(profile) / (photons * radius * radius),
       .bias_coefficient = unbiased ? 0 : bias[0],
+      .bias_terms = {smooth ? second * radius * radius : NAN,
+                     smooth ? fourth * radius * radius * radius * radius : NAN},
       .divergent = divergent,
       .rest = rest,
       .bias = bias,
@@ -154,6 +159,7 @@ struct prediction prediction_from_reference(double reference, double reference_s
       .truth_se = reference_se,
       .variance_coefficient = NAN,
       .bias_coefficient = NAN,
+      .bias_terms = {NAN, NAN},
       .divergent = divergent,
       .rest = constant ? NULL : rest, // with a constant radius the terms are one
       .bias = bias,

@@ -42,6 +42,7 @@ struct prediction {
   double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against
   double variance_coefficient; // A: the leading term of the first iteration's variance; or NAN
   double bias_coefficient;     // b_1: the first iteration's bias; or NAN
+  double bias_terms[2];        // what of it goes as r^2 and r^4; NAN where that is not known
   const double *divergent, *rest, *bias, *bias2; // [n]; rest, bias2 NULL where there is one term
   const double *kurtosis;                        // [n], excess, of one value; NULL if unknown
   const double *richardson; // [n], in closed form: 4/3 of what half the radius takes off `bias`

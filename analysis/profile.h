@@ -57,6 +57,8 @@ int profile_views(const struct profile *, double r, struct profile_view[PROFILE_
 double profile_moment(const struct profile *, int j, double r);
 // E[Y] at r less its limit, without their cancellation.
 double profile_bias(const struct profile *, double r);
+// Its terms: what r^2 and r^4 are multiplied by, near r = 0. False: at a shadow it has none.
+bool profile_bias_terms(const struct profile *, double *second, double *fourth);
 // The leading coefficient of E[Y^2]: its limit times r^2. Of a probe in the dark 0.
 double profile_roughness(const struct profile *);
 

@@ -1,6 +1,7 @@
 // Exact mean, variance and kurtosis of one iteration against the closed forms of theory 5, and
 // where there is no closed form to be had.
 #define _GNU_SOURCE // mkstemp
+#include "analysis/curve.h"
 #include "analysis/prediction.h"
 #include "tests/light_fixture.h"
 #include "walk/light_path.h"
@@ -196,6 +197,81 @@ static void test_lambertian_bias(void **state) {
   assert_relative(wide / narrow, 16, 0.05); // the next term is (r / h)^2 of it
 }
 
+// ---- averages ----
+
+// The box's bias at the foot is -r^2 / (h^2 + r^2) of the light; at the ring it begins with r^4.
+static void test_bias_terms(void **state) {
+  (void)state;
+  double second, fourth;
+  struct scene scene = light_scene(LAMBERTIAN, &arena);
+  struct profile foot = profile_at(&scene, "box", 0, 0.9);
+  assert_true(profile_bias_terms(&foot, &second, &fourth));
+  assert_relative(second / foot.exact, -1 / 1.69, 1e-9);
+  assert_relative(fourth / foot.exact, 1 / (1.69 * 1.69), 1e-6);
+  struct profile ring = profile_at(&scene, "box", 1.3 / sqrt(2), 0.9);
+  assert_true(profile_bias_terms(&ring, &second, &fourth));
+  assert_true(second == 0);
+  assert_relative(fourth * pow(0.01, 4), profile_bias(&ring, 0.01), 1e-3); // (r / h)^2
+  scene = light_scene(UNIFORM, &arena);
+  struct profile uniform = profile_at(&scene, "box", 0.3, 0.5);
+  assert_true(profile_bias_terms(&uniform, &second, &fourth));
+  assert_true(second == 0 && fourth == 0);
+}
+
+// Theory 5 (ii) and 1.2: Laplacian -8/h^2, of it 192/h^4 at the foot, from the bias of any kernel.
+static void test_light_of_bias(void **state) {
+  (void)state;
+  struct scene scene = light_scene(LAMBERTIAN, &arena);
+  for (int k = 0; k < n_kernels; k++) {
+    struct profile foot = profile_at(&scene, kernels[k].name, 0, 0.9);
+    struct local_light light = {.mu = foot.exact};
+    double second, fourth, r2 = 0.81;
+    assert_true(profile_bias_terms(&foot, &second, &fourth));
+    local_light_set_bias(&light, &kernels[k], 2, second * r2, fourth * r2 * r2);
+    assert_relative(light.curvature, -8 / 1.69 * r2, 1e-9);
+    assert_relative(light.bicurvature, 192 / (1.69 * 1.69) * r2 * r2, 1e-6);
+  }
+}
+
+// A quadratic beam is its expansion: the curve of the model, from theory's density and Laplacian,
+// is the one that is summed iteration by iteration. lambda = photons p pi r^2 with p = 2 (1 -
+// rho^2/a^2) / (pi a^2); Laplacian / p = -4 / (a^2 - rho^2).
+static void test_curve_is_that_of_the_model(void **state) {
+  (void)state;
+  const double r1 = 1.1, x = 0.4;
+  struct scene scene = light_scene(QUADRATIC, &arena);
+  struct probe probe = probe_at(x, 0);
+  for (int k = 0; k < n_kernels; k++) {
+    struct cell cell = cell_of(kernels[k].name, r1);
+    struct family_table table = {.law = cell.law, .n = 300};
+    struct family family = family_new(&table, cell.alpha, &arena);
+    struct prediction theory = prediction_new(&scene, &cell, &probe, &family, &arena);
+    double inside = beam_radius * beam_radius - x * x, a4 = pow(beam_radius, 4);
+    struct local_light light = {.mu = theory.truth,
+                                .photons = 1000,
+                                .lambda = 1000 * 2 * inside / a4 * r1 * r1,
+                                .curvature = -4 / inside * r1 * r1};
+    assert_relative(theory.truth, power * 2 * inside / (pi * a4), 1e-12);
+    struct model model = model_new(cell.law, cell.kernel, cell.alpha, 2, light);
+    struct curve scenes = curve_of_prediction(&theory, &cell, &arena);
+    struct curve models = curve_of_model(&model, r1, 300, &arena);
+    assert_int_equal(scenes.n, models.n);
+    for (int j = 0; j < models.n; j++) {
+      const struct curve_point *s = &scenes.point[j], *m = &models.point[j];
+      assert_true(s->n == m->n);
+      assert_relative(s->rho, m->rho, 1e-15);
+      assert_relative(s->radius, m->radius, 1e-14);
+      assert_relative(s->plus, m->plus, 1e-13);
+      assert_relative(s->minus, m->minus, 1e-13);
+      assert_relative(s->variance_one, m->variance_one, 1e-10);
+      assert_relative(s->bias_one, m->bias_one, 1e-10);
+      assert_relative(s->variance, m->variance, 1e-10);
+      assert_relative(s->bias, m->bias, 1e-10);
+      assert_relative(s->rmse, m->rmse, 1e-10);
+    }
+  }
+}
+
 // ---- where there is none ----
 
 static void test_refusals(void **state) {
@@ -303,6 +379,10 @@ int main(void) {
       {"the box under a Lambertian light has its closed form, anywhere", test_lambertian, 0, 0, 0},
       {"under a Lambertian light the bias is r^2 at the foot and r^4 at the ring",
        test_lambertian_bias, 0, 0, 0},
+      {"the first terms of a bias are theory's", test_bias_terms, 0, 0, 0},
+      {"they tell the Laplacians of the light, for every kernel", test_light_of_bias, 0, 0, 0},
+      {"the curve of a quadratic beam is that of its expansion, for every kernel",
+       test_curve_is_that_of_the_model, 0, 0, 0},
       {"there is no closed form across an edge, with two lights, footprints or direct sampling",
        test_refusals, 0, 0, 0},
       {"a wall takes the closed form away, a patch in the plane does not", test_other_surfaces, 0,
