@@ -33,6 +33,12 @@ static bool take_quiet(struct cli *cli, const char *text, struct problem *proble
   return true;
 }
 
+static bool take_csv(struct cli *cli, const char *text, struct problem *problem) {
+  (void)text, (void)problem;
+  cli->csv = true;
+  return true;
+}
+
 static bool take_lenient(struct cli *cli, const char *text, struct problem *problem) {
   (void)text, (void)problem;
   cli->options.lenient = true;
@@ -80,12 +86,21 @@ static const struct option options[] = {
     {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt", NULL},
     {"pixel", "WHERE", "pixel", "centre or footprint", NULL},
     {"hit-points", "N", "hit-points", "ppm: points of its one eye pass in each pixel", NULL},
+    {"csv", NULL, NULL, "comma-separated values instead of a table", take_csv},
+    {"dimension", "D", "dimension", "1 (beams), 2 (surfaces) or 3 (points in a volume)", NULL},
+    {"lambda", "L", "lambda", "photons expected in the first disc", NULL},
+    {"density", "P", "density", "instead: photons stored per emitted path and unit of area", NULL},
+    {"curvature", "C", "curvature", "radius^2 Laplacian f / f of the light f", NULL},
+    {"laplacian", "L", "laplacian", "instead: Laplacian f / f, per unit of area", NULL},
+    {"bilaplacian", "B", "bilaplacian", "Laplacian of the Laplacian / f, per unit of area^2", NULL},
+    {"from", "N", "from", "where the straight line begins; default two decades before the end",
+     NULL},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
-static const struct command *const commands[] = {&command_run,      &command_fit,  &command_plot,
-                                                 &command_render,   &command_info, &command_list,
-                                                 &command_validate, &command_plan};
+static const struct command *const commands[] = {
+    &command_predict, &command_plan, &command_run,  &command_fit,     &command_plot,
+    &command_render,  &command_info, &command_list, &command_validate};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----

@@ -12,6 +12,7 @@ enum { EXIT_USAGE = 2, CLI_MAX_SETTINGS = 32 };
 struct cli {
   const char *argument;         // the file or directory the command is about, or NULL
   const char *output, *quality; // NULL: not said
+  bool csv;
   struct run_options options;
   struct cli_setting { // keys of an experiment, in the order given
     const char *option, *key, *text;
@@ -38,7 +39,7 @@ const char *cli_setting_of(const struct cli *, const char *key);
 // The program; returns the exit status: 0, 1 (a problem), 2 (usage), 128 + signal (interrupted).
 int cli_main(int argc, char **argv);
 
-extern const struct command command_run, command_fit, command_plot, command_render, command_info,
-    command_plan, command_list, command_validate;
+extern const struct command command_predict, command_plan, command_run, command_fit, command_plot,
+    command_render, command_info, command_list, command_validate;
 
 #endif
