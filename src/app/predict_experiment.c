@@ -41,6 +41,11 @@ static struct asymptote dark_limit(const struct curve *curve) {
   return (struct asymptote){last->variance * (double)last->n * (double)last->n, 2, false};
 }
 
+// At an edge the last disc still has the share of light that is there, not that of r = 0.
+static double lit_share(const struct prediction *p) {
+  return p->divergent[p->n - 1] * p->family.rho[p->n - 1] / p->variance_coefficient;
+}
+
 static struct predicted predict_probe(const struct scene *scene, const struct cell *cell,
                                       const struct probe *probe, struct arena *arena,
                                       struct arena scratch) {
@@ -57,6 +62,7 @@ static struct predicted predict_probe(const struct scene *scene, const struct ce
   predicted.rates = rates_new(&predicted.model, cell->iterations);
   if (p.closed_form && p.bias_kind != BIAS_SMOOTH)
     predicted.rates.bias = edge_limit(&p, &predicted.model, &predicted.curve);
+  if (p.closed_form && p.bias_kind == BIAS_EDGE) predicted.rates.variance.constant *= lit_share(&p);
   if (p.closed_form && p.divergent[p.n - 1] == 0)
     predicted.rates.variance = dark_limit(&predicted.curve);
   return predicted;

@@ -54,6 +54,16 @@ check 'an experiment has a line for each cell and probe' \
 check 'and no constants where there is no closed form' \
   grep -qE '^cornell-box .* - +- +- +N\^-0.6667 +N\^-0.3333 +-0.6801 +-0.3053' "$scratch/table"
 
+# At a shadow's edge half of the light, 0.5 / pi^2, is missing for ever, and with it half the variance,
+# (0.5 / pi^2)^2 / 45 Gamma(5/3) / (4/3), 45 = 500 0.3^2; beside it the bias ends.
+printf '%s\n' 'scene: scenes/plane-shadow-edge.pbrt' 'photons: 500' 'radius: 0.3' \
+  'probes: [[32, 32], [40, 32], [10, 32]]' >"$scratch/edge.yaml"
+"$photonlab" predict "$scratch/edge.yaml" >"$scratch/table"
+check 'at an edge the bias stays' \
+  grep -qE '^32,32 .* 1\.931e-05 N\^-0\.6667  -0\.02533  +-0\.6[0-9]+ +0\.0000 ' "$scratch/table"
+check 'near an edge it ends' grep -qE '^40,32 .* N\^-1\.0000 ' "$scratch/table"
+check 'in the dark there is nothing' grep -qE '^10,32 .* 0 +0 +0 +0 +0 +- ' "$scratch/table"
+
 check 'alpha above 1' refuses '--alpha: 1.5 is outside [0, 1]' --alpha 0.5,1.5
 check 'an unknown kernel' refuses 'did you mean box' --kernel bx
 check 'an unknown law' refuses 'is unknown' --law hachi
