@@ -27,7 +27,7 @@ loads = field("6")
 
 # ---- medians over repetitions, least and most ----
 set datafile separator comma
-array wall1[n_kinds]; array cpu1[n_kinds]
+array wall1[n_kinds]; array least1[n_kinds]; array cpu1[n_kinds]
 slowest = 1; fastest = 1; best = 1 # speed-ups; efficiency
 do for [k = 1:n_kinds] {
   eval "set print $times_".k
@@ -40,14 +40,14 @@ do for [k = 1:n_kinds] {
         word(kinds, k), n, repetitions)
       exit status 1
     }
-    if (n eq "1") { wall1[k] = wall_median; cpu1[k] = cpu_median }
+    if (n eq "1") { wall1[k] = wall_median; least1[k] = wall_min; cpu1[k] = cpu_median }
     low = wall1[k] / wall_max; high = wall1[k] / wall_min
     slowest = low < slowest ? low : slowest
     fastest = high > fastest ? high : fastest
     best = high / n > best ? high / n : best
     best = cpu1[k] / cpu_min > best ? cpu1[k] / cpu_min : best
-    print sprintf("%s %.9g %.9g %.9g %.9g %.9g %.9g", n, wall1[k] / wall_median, low, high, \
-      cpu1[k] / cpu_median, cpu1[k] / cpu_max, cpu1[k] / cpu_min)
+    print sprintf("%s %.9g %.9g %.9g %.9g %.9g %.9g %.9g", n, wall1[k] / wall_median, low, high, \
+      cpu1[k] / cpu_median, cpu1[k] / cpu_max, cpu1[k] / cpu_min, least1[k] / wall_min)
   }
   unset print
 }
@@ -88,7 +88,9 @@ do for [terminal_name in "pdf svg png"] {
   plot x linecolor "#888888" linewidth 0.8 dashtype 2, \
     for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):2:3:4 with yerrorbars linewidth 0.8 \
       pointtype full(k) linecolor rgb colour(k), \
-    for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):2 with lines linewidth 0.8 linecolor rgb colour(k)
+    for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):2 with lines linewidth 0.8 linecolor rgb colour(k), \
+    for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):8 with points pointtype 2 pointsize 0.6 linewidth 1.2 \
+      linecolor rgb colour(k)
   # ---- efficiency ----
   unset logscale y
   set lmargin at screen 0.59
@@ -104,22 +106,25 @@ do for [terminal_name in "pdf svg png"] {
     for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):5:6:7 with yerrorbars \
       linewidth 0.6 pointtype full(k) - 1 linecolor rgb colour(k), \
     for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):5 with lines linewidth 0.6 dashtype 3 \
-      linecolor rgb colour(k)
+      linecolor rgb colour(k), \
+    for [k = 1:n_kinds] "$times_".k using ($1 * beside(k)):($8 / $1) with points pointtype 2 pointsize 0.6 \
+      linewidth 1.2 linecolor rgb colour(k)
   # ---- one legend ----
   unset logscale
   unset tics; unset xlabel; unset title; unset grid
   set border 0
   set lmargin at screen 0.05
   set rmargin at screen 0.95
-  set tmargin at screen 0.34
-  set bmargin at screen 0.13
+  set tmargin at screen 0.35
+  set bmargin at screen 0.16
   set key center center samplen 2.2 maxcols 1
-  set label 1 sprintf("medians and ranges of %d interleaved repetitions; filled: wall clock, ".\
-    "t_1 / (n t_n); hollow: CPU seconds of 1 thread / those of n; dashed: ideal", \
-    repetitions) at screen 0.5,0.095 center textcolor "#444444" font ",7"
-  set label 2 sprintf("%s, %d core%s; load average before the measurements: %s to %s; ".\
+  set label 1 sprintf("filled: wall clock, t_1 / t_n and t_1 / (n t_n), medians and ranges of %d interleaved repetitions;", \
+    repetitions) at screen 0.5,0.135 center textcolor "#444444" font ",7"
+  set label 2 "crosses: the same of the least times; hollow: CPU seconds of 1 thread / those of n; dashed: ideal" \
+    at screen 0.5,0.085 center textcolor "#444444" font ",7"
+  set label 3 sprintf("%s, %d core%s; load average before the measurements: %s to %s; ".\
     "log and images are the same bytes", machine, cores, cores == 1 ? "" : "s", word(loads, 1), \
-    word(loads, words(loads))) at screen 0.5,0.045 center textcolor "#444444" font ",7" noenhanced
+    word(loads, words(loads))) at screen 0.5,0.035 center textcolor "#444444" font ",7" noenhanced
   plot [0:1] [0:1] for [k = 1:n_kinds] NaN with linespoints linewidth 0.8 pointtype full(k) \
     linecolor rgb colour(k) title word(titles, k)
   unset label
