@@ -1,7 +1,9 @@
 // photonlab list, info, validate: what is registered, what a scene holds, whether the tables are
 // right.
 #include "app/cli.h"
+#include "app/stability.h"
 #include "app/validate.h"
+#include "base/file.h"
 #include "pbrt/suggest.h"
 #include "scene/info.h"
 #include "spectrum/spectrum.h"
@@ -150,9 +152,24 @@ static int info(struct cli *cli, struct problem *problem) {
   return 0;
 }
 
+// Every level of every stress into -o, for the figure.
+static int validate_stability(struct cli *cli, struct problem *problem) {
+  if (!cli->output) return stability_run(stdout, NULL) ? 0 : 1;
+  struct file_out out;
+  if (!file_begin(&out, cli->output, problem)) return 1;
+  bool ok = stability_run(stdout, out.stream);
+  return file_commit(&out, problem) && ok ? 0 : 1;
+}
+
 static int validate(struct cli *cli, struct problem *problem) {
-  (void)cli, (void)problem;
-  return validate_run(stdout) ? 0 : 1;
+  if (cli->argument && strcmp(cli->argument, "stability") == 0)
+    return validate_stability(cli, problem);
+  if (!cli->argument && !cli->output) return validate_run(stdout) ? 0 : 1;
+  problem_set(problem,
+              cli->argument ? "there is only 'stability' to validate apart, not '%s'"
+                            : "-o is for the levels of 'validate stability'%s",
+              cli->argument ? cli->argument : "");
+  return EXIT_USAGE;
 }
 
 const struct command command_list = {"list", "[WHAT]", "what is registered: laws, kernels, ...", "",
@@ -162,5 +179,6 @@ const struct command command_info = {
     "info", "SCENE", "what a scene holds and which features it lets us skip", "lenient", info};
 
 const struct command command_validate = {
-    "validate", NULL, "checks radius laws, kernels and functions against theory's values", "",
-    validate};
+    "validate", "[stability]",
+    "checks laws, kernels and functions against theory's values; or their errors under stress",
+    "output", validate};
