@@ -176,7 +176,7 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 -include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources)) $(generated))
 
 # ---- tests ----
-.PHONY: test conformance test-programs test-asan test-tsan test-bits test-plants validate
+.PHONY: test conformance test-programs test-long test-asan test-tsan test-bits test-plants validate
 test-programs: $(test_programs)
 
 # Folders of pbrt-v4's scenes and images; absent ones are skipped.
@@ -233,6 +233,12 @@ fuzz:
 fuzz-coverage:
 	@$(MAKE) BUILD=coverage fuzz-programs
 	@tests/fuzz/coverage $(fuzz_sources:tests/%.c=build/coverage/tests/%)
+
+# Tests that take 16 times the samples if asked, and with them the tolerances that theory states.
+long_tests := $(filter $(shell grep -l TEST_LONG tests/unit/*.c tests/statistical/*.c),$(test_sources))
+long_programs := $(long_tests:tests/%.c=$(out)/tests/%)
+test-long: $(long_programs)
+	@TEST_LONG=1 TIME_LIMIT_S=3600 tests/run $(long_programs)
 
 test-bits: $(binary)
 	@TIME_LIMIT_S=900 PHOTONLAB=$(binary) tests/run tests/bits
@@ -300,6 +306,7 @@ clean:
 help:
 	@echo 'make                   build/photonlab; installs Debian packages that are missing'
 	@echo 'make test              all tests: N passed, N failed'
+	@echo 'make test-long         the statistical ones again with more samples, at theory'"'"'s tolerances'
 	@echo 'make test-asan         unit and statistical tests under address and undefined sanitizers'
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
 	@echo 'make fuzz              FUZZ_SECONDS=60 for each reader of files; fuzz-coverage: lines reached'
