@@ -176,7 +176,7 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 -include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources)) $(generated))
 
 # ---- tests ----
-.PHONY: test test-long conformance test-programs test-long test-asan test-tsan test-bits test-plants validate
+.PHONY: test test-long conformance test-programs test-asan test-tsan test-bits test-plants validate
 test-programs: $(test_programs)
 
 # Folders of pbrt-v4's scenes and images; absent ones are skipped.
@@ -189,10 +189,6 @@ folders = CONFORMANCE=$(CONFORMANCE) SCENES=$(SCENES)
 test: $(binary) $(test_programs) $(conformance)
 	@$(folders) PHOTONLAB=$(binary) PHOTONLAB_OBJECTS=$(out)/obj tests/run $(conformance) \
 	  $(test_programs) $(cli_tests)
-
-# The statistical tests with the larger samples they have (LONG=1).
-test-long: $(binary) $(filter $(out)/tests/statistical/%,$(test_programs))
-	@LONG=1 TIME_LIMIT_S=3600 tests/run $(filter $(out)/tests/statistical/%,$(test_programs))
 
 conformance: $(conformance)
 	@$(if $(SCENE),:,[ ! -d $(CONFORMANCE) ] || $(folders) tests/conformance/pbrt-coat)
@@ -238,7 +234,7 @@ fuzz-coverage:
 	@$(MAKE) BUILD=coverage fuzz-programs
 	@tests/fuzz/coverage $(fuzz_sources:tests/%.c=build/coverage/tests/%)
 
-# Tests that take 16 times the samples if asked, and with them the tolerances that theory states.
+# Tests that take more samples if asked, and with them the tolerances that theory states.
 long_tests := $(filter $(shell grep -l TEST_LONG tests/unit/*.c tests/statistical/*.c),$(test_sources))
 long_programs := $(long_tests:tests/%.c=$(out)/tests/%)
 test-long: $(long_programs)
@@ -311,7 +307,6 @@ help:
 	@echo 'make                   build/photonlab; installs Debian packages that are missing'
 	@echo 'make test              all tests: N passed, N failed'
 	@echo 'make test-long         the statistical ones again with more samples, at theory'"'"'s tolerances'
-	@echo 'make test-long         statistical tests with larger samples'
 	@echo 'make test-asan         unit and statistical tests under address and undefined sanitizers'
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
 	@echo 'make fuzz              FUZZ_SECONDS=60 for each reader of files; fuzz-coverage: lines reached'
