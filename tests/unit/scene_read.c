@@ -19,7 +19,7 @@ static void assert_vec(struct vec a, double x, double y, double z) {
     fail_msg("(%.17g %.17g %.17g) is not (%g %g %g)", a.x, a.y, a.z, x, y, z);
 }
 
-static void every_scene_of_the_project_is_read_and_is_gray(void **state) {
+static void every_scene_of_the_project_is_read_and_gray_but_for_the_balls(void **state) {
   (void)state;
   glob_t files;
   assert_int_equal(glob("scenes/*.pbrt", 0, NULL, &files), 0);
@@ -29,7 +29,9 @@ static void every_scene_of_the_project_is_read_and_is_gray(void **state) {
     struct problem problem = {{0}};
     if (!scene_read(files.gl_pathv[i], &keep, &scene, &problem)) fail_msg("%s", problem.text);
     assert_true(scene.n_primitives > 0 && scene.n_lights > 0 && scene.hash != 0);
-    if (!scene_features(&scene).gray) fail_msg("%s is not gray", files.gl_pathv[i]);
+    bool gray = !strstr(files.gl_pathv[i], "balls"); // made for pictures
+    if (scene_features(&scene).gray != gray)
+      fail_msg("%s is %sgray", files.gl_pathv[i], gray ? "not " : "");
   }
   globfree(&files);
 }
@@ -263,7 +265,7 @@ static void a_surface_is_the_hit_point_and_its_normal(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_scene_of_the_project_is_read_and_is_gray),
+      cmocka_unit_test(every_scene_of_the_project_is_read_and_gray_but_for_the_balls),
       cmocka_unit_test(a_cornell_box_becomes_arrays),
       cmocka_unit_test(what_the_file_does_not_say_has_pbrts_default),
       cmocka_unit_test(our_integrators_parameters_arrive),
