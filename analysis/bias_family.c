@@ -4,12 +4,13 @@
 
 // The power of r.
 static double power_of(const struct prediction *theory) {
-  return theory->bias_kind == BIAS_SIDE ? 1 : 2;
+  return theory->bias_kind == BIAS_SIDE ? 1 : theory->bias_kind == BIAS_FOURTH ? 4 : 2;
 }
 
 double bias_theory_rate(const struct prediction *theory) {
   switch (theory->bias_kind) {
   case BIAS_SMOOTH:
+  case BIAS_FOURTH:
   case BIAS_SIDE:
     return power_of(theory) / theory->d * (1 - theory->family.theory);
   case BIAS_EDGE:
@@ -62,6 +63,7 @@ static void by_tail(const struct prediction *theory, double rate, double *shape,
 void bias_family(const struct prediction *theory, double rate, double *shape, double *slope) {
   switch (theory->bias_kind) {
   case BIAS_SMOOTH:
+  case BIAS_FOURTH:
   case BIAS_SIDE:
     by_radius(theory, rate, shape, slope);
     return;

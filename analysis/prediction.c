@@ -54,19 +54,28 @@ static bool is_zero_bias(const double *bias, uint64_t n, double exact) {
   return largest <= 1e-12 * fabs(exact);
 }
 
-// Nearer than 1 % of the last radius r an edge is where the probe is: the bias, half the light less
-// 4 a / (pi r) of it for the box, falls as r^0.03 at most, which nobody measures. That of a pixel
-// whose side the edge is differs by the square of it.
-static const double at_edge = 0.01;
+// What is below 1 % of something else is not measured beside it.
+static const double negligible = 0.01;
 
-// The distances to the edge from lo to hi: places on both sides cancel if they are all there.
+// Where r^2 vanishes r^4 is left.
+static enum bias_kind kind_in_smooth_light(const struct profile *profile, double last_radius) {
+  double second, fourth, bias = profile_bias(profile, last_radius);
+  profile_bias_terms(profile, &second, &fourth);
+  bool none = fabs(second) * last_radius * last_radius < negligible * fabs(bias);
+  return none ? BIAS_FOURTH : BIAS_SMOOTH;
+}
+
+// An edge nearer than that share of the last radius r is where the probe is: the bias, half the
+// light less 4 a / (pi r) of it for the box, falls as r^0.03 at most. That of a pixel whose side
+// the edge is differs by the square of it. The distances to the edge are those from the difference
+// to the sum: places on both sides cancel if they are all there.
 static enum bias_kind kind_of_bias(const struct profile *profile, double first_radius,
                                    double last_radius) {
   double distance = profile->shadow.distance, spread = profile->spread;
   double near = fabs(distance - spread), far = distance + spread;
-  if (profile->shadow.shade == SHADE_NONE) return BIAS_SMOOTH;
+  if (profile->shadow.shade == SHADE_NONE) return kind_in_smooth_light(profile, last_radius);
   if (near >= last_radius) return BIAS_ENDS;
-  if (near >= at_edge * last_radius) return BIAS_STAYS;
+  if (near >= negligible * last_radius) return BIAS_STAYS;
   if (spread == 0) return BIAS_EDGE;
   return far >= first_radius ? BIAS_SIDE : BIAS_STAYS;
 }

@@ -14,6 +14,7 @@
 // How the bias of an iteration depends on its radius.
 enum bias_kind {
   BIAS_SMOOTH, // as r^2, and higher powers of it
+  BIAS_FOURTH, // as r^4, and higher powers: the light's Laplacian is zero
   BIAS_SIDE,   // as r: the side of the probe's pixel is an edge of the light, the bias the error
                // integrated over one side of it (theory 5 iv)
   BIAS_EDGE,   // not at all: the probe is at an edge (theory 1.5)

@@ -6,6 +6,11 @@
 
 static const uint64_t most_terms = 10000000; // iteration by iteration
 
+// In powers of r^2.
+static bool is_series(const struct prediction *p) {
+  return p->bias_kind == BIAS_SMOOTH || p->bias_kind == BIAS_FOURTH;
+}
+
 // The light a closed form has around a probe, as far as two terms of the bias tell. At an edge of
 // the light there are none.
 static struct local_light light_in(const struct prediction *p, const struct cell *cell,
@@ -19,7 +24,7 @@ static struct local_light light_in(const struct prediction *p, const struct cell
         cell->kernel->constants(p->d).roughness * disc * mu * mu / p->variance_coefficient;
   if (p->unbiased)
     light.curvature = 0;
-  else if (p->closed_form && p->bias_kind == BIAS_SMOOTH)
+  else if (p->closed_form && is_series(p))
     local_light_set_bias(&light, cell->kernel, p->d, p->bias_terms[0], p->bias_terms[1]);
   return light;
 }
@@ -60,7 +65,7 @@ static struct predicted predict_probe(const struct scene *scene, const struct ce
       .curve = curve_of_prediction(&p, cell, arena),
   };
   predicted.rates = rates_new(&predicted.model, cell->iterations);
-  if (p.closed_form && p.bias_kind != BIAS_SMOOTH)
+  if (p.closed_form && !is_series(&p))
     predicted.rates.bias = edge_limit(&p, &predicted.model, &predicted.curve);
   if (p.closed_form && p.bias_kind == BIAS_EDGE) predicted.rates.variance.constant *= lit_share(&p);
   if (p.closed_form && p.divergent[p.n - 1] == 0)
