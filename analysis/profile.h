@@ -5,27 +5,13 @@
 #ifndef ANALYSIS_PROFILE_H
 #define ANALYSIS_PROFILE_H
 
-#include "analysis/chebyshev.h"
-#include "analysis/shadow.h"
+#include "analysis/ring_mean.h"
 #include "base/arena.h"
 #include "experiment/experiment.h"
 #include "log/results.h"
 #include "scene/scene.h"
 
 enum { PROFILE_MOMENTS = 4 };
-
-// The density of photons around the probe, averaged over the angle, in the squared distance; a
-// shadow's edge only where it is the same everywhere, and `density` is that of the lit side.
-struct ring_mean {
-  double flux; // luminance per photon
-  struct chebyshev density;
-  struct half_shadow shadow;
-  double spread; // the distance to the edge is uniform, by as much as this: a pixel's footprint
-};
-
-// False: there is no closed form for this probe within `radius`.
-bool ring_mean_find(const struct scene *, const struct cell *, const struct probe *, double radius,
-                    struct arena scratch, struct ring_mean *);
 
 struct profile {
   double exact; // E[Y] as r -> 0
@@ -47,9 +33,9 @@ bool profile_find(const struct scene *, const struct cell *, const struct probe 
 // view is a place, or many that are alike.
 enum { PROFILE_NODES = 16, PROFILE_VIEWS = 2 * PROFILE_NODES + 2 };
 struct profile_view {
-  double weight; // they sum to 1
-  double bias, mean,
-      moment[PROFILE_MOMENTS]; // of E[Y] there: less its limit, and that of all places
+  double weight;                  // they sum to 1
+  double bias;                    // of E[Y] there, less its limit there
+  double moment[PROFILE_MOMENTS]; // E[Y^j] there
 };
 int profile_views(const struct profile *, double r, struct profile_view[PROFILE_VIEWS]);
 
