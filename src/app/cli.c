@@ -99,8 +99,8 @@ static const struct option options[] = {
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
 static const struct command *const commands[] = {
-    &command_predict, &command_plan, &command_run,  &command_fit,     &command_plot,
-    &command_render,  &command_info, &command_list, &command_validate};
+    &command_predict, &command_plan,    &command_run,  &command_fit,  &command_plot,
+    &command_render,  &command_compare, &command_info, &command_list, &command_validate};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----
@@ -192,14 +192,16 @@ static int read_option(const struct command *command, char **argv, int argc, int
 
 static int read_arguments(const struct command *command, int argc, char **argv, struct cli *cli,
                           struct problem *problem) {
+  cli->arguments = arena_new(cli->arena, const char *, argc);
   for (int at = 2; at < argc; at++) {
     if (argv[at][0] == '-' && argv[at][1]) {
       int status = read_option(command, argv, argc, &at, cli, problem);
       if (status) return status;
-    } else if (!command->argument || cli->argument) {
+    } else if (!command->argument || (cli->argument && !strstr(command->argument, "..."))) {
       return usage("unexpected argument '%s'", argv[at], NULL);
     } else {
-      cli->argument = argv[at];
+      if (!cli->argument) cli->argument = argv[at];
+      cli->arguments[cli->n_arguments++] = argv[at];
     }
   }
   if (command->argument && command->argument[0] != '[' && !cli->argument)

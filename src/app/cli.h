@@ -10,7 +10,9 @@ enum { EXIT_USAGE = 2, CLI_MAX_SETTINGS = 32 };
 
 // What was said on the command line.
 struct cli {
-  const char *argument;         // the file or directory the command is about, or NULL
+  const char *argument;   // the file or directory the command is about, or NULL
+  const char **arguments; // all of them, where a command takes more than one
+  int n_arguments;
   const char *output, *quality; // NULL: not said
   bool csv;
   struct run_options options;
@@ -24,7 +26,8 @@ struct cli {
 
 struct command {
   const char *name;
-  const char *argument; // "SCENE", shown in the usage; "[WHAT]": may be left out; NULL: none
+  const char *argument; // "SCENE", shown in the usage; "[WHAT]": may be left out; "FILE...": or
+                        // more; NULL: none
   const char *about;
   const char *options; // names of those that have an effect, separated by spaces
   int (*run)(struct cli *, struct problem *); // the exit status; 0 with a problem set counts as 1
@@ -40,6 +43,6 @@ const char *cli_setting_of(const struct cli *, const char *key);
 int cli_main(int argc, char **argv);
 
 extern const struct command command_predict, command_plan, command_run, command_fit, command_plot,
-    command_render, command_info, command_list, command_validate;
+    command_render, command_info, command_compare, command_list, command_validate;
 
 #endif
