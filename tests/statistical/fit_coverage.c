@@ -107,6 +107,20 @@ static void test_few_photons(void **state) {
   for (int r = 0; r < 2; r++) check_sizes(&tally[r]);
 }
 
+// At a shadow's edge, rate 0, and where the discs come clear of it at iteration 87, rate 1.
+static void test_edges(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: coverage at an edge", s.gaussian = true, s.photons_1 = 4000, s.edge = 1e-3;
+  struct tally tally[2][2] = {{{0}}};
+  study(&s, tally[0]);
+  s.edge = 0.5;
+  study(&s, tally[1]);
+  for (int k = 0; k < 2; k++)
+    for (int r = 0; r < 2; r++)
+      check_coverage(&tally[k][r]), check_sizes(&tally[k][r]), check_curves(&tally[k][r]);
+}
+
 // Without closed form: the constant of the variance, the second term of the bias and the error of
 // the reference (2 % of the first bias) are free.
 static void test_reference(void **state) {
@@ -141,6 +155,8 @@ int main(void) {
       {"intervals cover and tests hold their size with counts", test_counts, 0, 0, 0},
       {"intervals cover and tests hold their size with one photon in the disc", test_few_photons, 0,
        0, 0},
+      {"intervals cover and tests hold their size at and near a shadow's edge", test_edges, 0, 0,
+       0},
       {"intervals cover and tests hold their size with an uncertain reference", test_reference, 0,
        0, 0},
       {"with few runs and photons no more runs disagree than the level allows", test_few_runs, 0, 0,

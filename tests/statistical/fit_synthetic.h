@@ -16,6 +16,7 @@ struct synthetic {
   uint64_t iterations, runs;
   double photons_1; // lambda_1, expected in the first disc
   double curvature; // irradiance 1 - curvature (distance / r_1)^2
+  double edge;      // distance of a shadow's edge from the probe in the light, in r_1; 0: none
   bool gaussian;    // normal values instead of counts
   // What is planted: the squared radius the defect uses, in units of theory's first, at iteration i
   // where theory's is rho; values times `factor`; the same photons in every iteration.
@@ -60,12 +61,19 @@ static inline double poisson(double mean, double u) {
   return count;
 }
 
+// The share of a disc of radius r beyond the edge (theory 1.5).
+static inline double synthetic_beyond(double edge, double r) {
+  double t = edge / r;
+  return t < 1 ? (acos(t) - t * sqrt(1 - t * t)) / 3.14159265358979323846 : 0;
+}
+
 // One iteration's value: E = 1 at the probe, r_1 = 1, so that a photon carries pi / lambda_1 per
 // unit of area.
 static inline double synthetic_value(const struct synthetic *s, double rho, uint64_t i,
                                      struct stream *stream) {
   if (s->black) return 0;
   double r2 = s->r2 ? s->r2(s->alpha, rho, i) : rho, mean = 1 - s->curvature * r2 / 2;
+  if (s->edge > 0) mean -= synthetic_beyond(s->edge, sqrt(r2));
   double photons = s->photons_1 * r2 * mean, value;
   if (s->gaussian)
     value = mean * (1 + stream_normal(stream) / sqrt(photons));
@@ -80,6 +88,7 @@ static inline struct ring_mean synthetic_ring(const struct synthetic *s) {
   struct ring_mean ring = {.flux = 1 / density, .density.hi = 1};
   ring.density.coefficient[0] = density * (1 - s->curvature / 2);
   ring.density.coefficient[1] = -density * s->curvature / 2;
+  if (s->edge > 0) ring.shadow = (struct half_shadow){.shade = SHADE_LIT, .distance = s->edge};
   return ring;
 }
 
