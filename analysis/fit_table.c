@@ -167,6 +167,10 @@ static void print_counts(const struct fit *fit, FILE *stream) {
 void fit_print_table(const struct fit *fit, FILE *stream) {
   bool colour = in_colour(stream);
   struct setting set[N_COLUMNS];
+  if (fit->n_rows == 0) {
+    fprintf(stream, "%s: no rate is asked for (quantity: none)\n", fit->experiment->name);
+    return;
+  }
   for (int c = 0; c < N_COLUMNS; c++) {
     set[c] = column_setting(fit, c);
     if (set[c].shown) print_cell(stream, c, &set[c], set[c].head);
@@ -176,6 +180,5 @@ void fit_print_table(const struct fit *fit, FILE *stream) {
   fprintf(stream, "%s: %s%s%s (", fit->experiment->name, colour ? colour_of(fit->verdict) : "",
           verdict_names[fit->verdict], colour ? "\033[0m" : "");
   print_counts(fit, stream);
-  fprintf(stream, "%sfamily-wise level %g, each test at %.2g)\n", fit->n_rows ? "; " : "",
-          fit->level, fit->test_level);
+  fprintf(stream, "; family-wise level %g, each test at %.2g)\n", fit->level, fit->test_level);
 }

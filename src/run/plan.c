@@ -324,6 +324,7 @@ void plan_probes(const struct group_plan *plan, struct probe *probe, struct aren
     probe[p].p = point.p;
     probe[p].n = eye_normal(&point);
     bsdf_value(&point.bsdf, point.wo, probe[p].n, TRANSPORT_RADIANCE, probe[p].scale_rgb);
+    for (int c = 0; c < 3; c++) probe[p].scale_rgb[c] *= point.weight[c];
     probe[p].scale = luminance(probe[p].scale_rgb, 3);
     probe[p].emitted = luminance(point.emitted, 3);
   }

@@ -21,6 +21,11 @@ for command in $commands; do
 done
 check 'a command says where an option has no effect' \
   grep -q -- '--seed SEED *accepted, without effect here' <("$photonlab" fit --help)
+for experiment in experiments/*.yaml; do
+  name=$(basename "$experiment" .yaml)
+  check "experiment $name has a figure" test -s "paper-figures/$name.gp" -a -s "paper-figures/$name.png"
+  check "the README shows it" grep -q "paper-figures/$name.png" README.md
+done
 check 'list takes the options all take' "$photonlab" list laws --seed 1 --threads 2 --quiet
 check 'info takes the options all take' \
   "$photonlab" info scenes/cornell-box.pbrt --seed name --threads 2 --quiet
