@@ -45,7 +45,7 @@ struct fit_row {
   int looks; // at the runs, each of which could have been the last
   bool resolved, detected;
   enum verdict verdict;
-  const char *why; // there is no fit; or NULL
+  const char *why; // there is no fit, or nothing is known of the rate; or NULL
 };
 
 // The measured curves beside the predicted ones: of the running average, and of single iterations,

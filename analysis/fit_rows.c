@@ -6,6 +6,7 @@
 #include <math.h>
 
 const char fit_no_reference[] = "no reference";
+const char fit_noisy_reference[] = "the reference is too noisy (photonlab plan: how precise)";
 static const double largest_rate_se = 0.1, widest_interval = 0.3;
 
 static void add_test(struct fit_row *row, const char *name, double statistic, double p) {
@@ -115,6 +116,17 @@ static const double *weights_of(const struct variance_fit *v) {
   return v->rate_se <= largest_rate_se ? v->variance : v->expected;
 }
 
+// Whether half the variance of the bias' coefficient is the reference's.
+static bool reference_dominates(const struct prediction *theory, const struct series *series,
+                                const struct variance_fit *v, const struct bias_fit *b,
+                                struct arena scratch) {
+  if (!b->measured || !(theory->truth_se > 0)) return false;
+  struct prediction exact = *theory;
+  exact.truth_se = 0;
+  struct bias_fit without = fit_bias(&exact, series->iteration, v, weights_of(v), &scratch);
+  return without.measured && b->coefficient_se >= sqrt(2) * without.coefficient_se;
+}
+
 static void fit_bias_series(const struct results *results, const struct series *series,
                             const struct prediction *theory, const struct variance_fit *v,
                             double dependence, struct arena scratch, struct fit *fit) {
@@ -124,6 +136,8 @@ static void fit_bias_series(const struct results *results, const struct series *
   row->why = v->why || isfinite(theory->truth) ? v->why : fit_no_reference;
   if (!row->why && theory->bias_kind == BIAS_STAYS) row->why = "an edge stays in the disc";
   bias_row(&b, v, theory, row);
+  if (!row->why && !row->resolved && reference_dominates(theory, series, v, &b, scratch))
+    row->why = fit_noisy_reference;
   if (theory->independent && b.measured) {
     add_deviate(row, "independence", dependence); // its standard errors rest on it
     if (b.lack_of_fit.dof >= 1)

@@ -9,6 +9,7 @@
 static const double fit_detection_snr = 3;
 
 extern const char fit_no_reference[]; // why a bias has no fit
+extern const char fit_noisy_reference[]; // or no rate
 
 // Appends the series' rows and points to the fit, which has room for them.
 void fit_series(const struct results *, const struct series *, const struct prediction *,

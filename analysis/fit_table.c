@@ -58,7 +58,8 @@ static void print_ratio(const struct fit_row *row, char *text) {
 static void print_verdict(const struct fit_row *row, char *text) {
   copy(text, verdict_names[row->verdict]);
   const char *separator = ":";
-  if (row->why && row->verdict == VERDICT_NOT_RESOLVABLE)
+  bool unknown = row->verdict == VERDICT_NOT_RESOLVABLE || row->verdict == VERDICT_NOT_DETECTED;
+  if (row->why && unknown)
     snprintf(text, CELL_SIZE, "%s: %s", verdict_names[row->verdict], row->why);
   for (int t = 0; t < row->n_tests; t++) {
     size_t length = strlen(text);

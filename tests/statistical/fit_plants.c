@@ -251,6 +251,23 @@ static void test_missed_bias(void **state) {
   }
 }
 
+// The first bias is 0.125, the last 0.045. A reference off by 0.05 hides how it falls, one off by
+// 0.0002 does not; the photons are the same.
+static void test_noisy_reference(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: noisy reference", s.gaussian = true, s.closed_form = false;
+  s.photons_1 = 5000, s.iterations = 30, s.reference_se = 0.0002;
+  struct fit fit = fit_of(&s);
+  assert_int_equal(fit.row[1].verdict, VERDICT_AGREE);
+  assert_null(fit.row[1].why);
+  s.reference_se = 0.05;
+  fit = fit_of(&s);
+  assert_int_equal(fit.row[1].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_non_null(fit.row[1].why);
+  assert_non_null(strstr(fit.row[1].why, "the reference is too noisy"));
+}
+
 int main(void) {
   arena = arena_reserve();
   const struct CMUnitTest tests[] = {
@@ -268,6 +285,7 @@ int main(void) {
       {"black where there is light disagrees, unless none was to be expected", test_black, 0, 0, 0},
       {"light where there is none disagrees", test_light_in_the_dark, 0, 0, 0},
       {"a bias that theory expects and that is not there never agrees", test_missed_bias, 0, 0, 0},
+      {"a reference that hides the rate is named", test_noisy_reference, 0, 0, 0},
       {"where the model does not fit no rate is stated", test_no_rate_without_fit, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit_plants", tests, NULL, NULL);
