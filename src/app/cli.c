@@ -99,8 +99,9 @@ static const struct option options[] = {
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
 static const struct command *const commands[] = {
-    &command_predict, &command_plan,    &command_run,  &command_fit,  &command_plot,
-    &command_render,  &command_compare, &command_info, &command_list, &command_validate};
+    &command_predict, &command_plan,   &command_run,     &command_fit,
+    &command_plot,    &command_render, &command_compare, &command_reference,
+    &command_info,    &command_list,   &command_validate};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----

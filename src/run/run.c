@@ -211,3 +211,13 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
   struct outputs outputs = {&plan, probe, directory};
   return output_write(&outputs, *arena, problem) ? RUN_DONE : RUN_FAILED;
 }
+
+enum run_outcome run_references(const struct experiment *experiment, const char *path,
+                                struct run_options options, struct probe **probe, struct plan *plan,
+                                struct arena *arena, struct problem *problem) {
+  const char *directory = without_slashes(path, arena);
+  if (!plan_make(experiment, options, arena, plan, problem)) return RUN_FAILED;
+  interrupt_install();
+  if (probes_make(plan, directory, probe, arena, problem)) return RUN_DONE;
+  return problem->text[0] ? RUN_FAILED : interrupted(references_of(directory, arena));
+}

@@ -17,4 +17,10 @@ enum run_outcome { RUN_FAILED, RUN_DONE, RUN_INTERRUPTED };
 enum run_outcome run_experiment(const struct experiment *, const char *directory,
                                 struct run_options, struct arena *, struct problem *);
 
+// Only the references that run_experiment would sample, into the same cache; probe[cell] are then
+// the probes of each cell.
+enum run_outcome run_references(const struct experiment *, const char *directory,
+                                struct run_options, struct probe **probe, struct plan *,
+                                struct arena *, struct problem *);
+
 #endif

@@ -1,0 +1,38 @@
+#!/bin/bash
+# What is done ahead of a run: references, plans.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+cat >"$scratch/traced.yaml" <<'END'
+scene: scenes/cornell-box.pbrt
+radius: 0.2
+photons: 500
+iterations: 10
+runs: 16
+probes: [[20, 60], [16, 3]]
+alpha: [0.5, 2/3]
+reference: {integrator: path, se: 0.002}
+END
+sed 's/^reference.*/reference: none/' "$scratch/traced.yaml" >"$scratch/none.yaml"
+
+printed=$("$photonlab" reference "$scratch/traced.yaml" -o "$scratch/results/traced" --quiet)
+check 'a reference is printed once for cells that share it' \
+  test "$(grep -c '^cornell-box ' <<<"$printed")" = 2
+check 'its standard errors are those asked for' \
+  awk '/^cornell-box / && !($5 > 0 && $5 <= 0.002) { exit 1 }' <<<"$printed"
+before=$(stat -c '%n %Y %Z' "$scratch"/results/references/*)
+check 'the run after it' "$photonlab" run "$scratch/traced.yaml" -o "$scratch/results/traced" --quiet
+check 'a run takes the references that are there' \
+  test "$before" = "$(stat -c '%n %Y %Z' "$scratch"/results/references/*)"
+check 'they are what it logs' \
+  grep -q "$(awk '/20 +60/ { print substr($4, 1, 7) }' <<<"$printed")" "$scratch/results/traced/probes.csv"
+check 'without a traced reference there is none' \
+  grep -q 'no cell asks' <("$photonlab" reference "$scratch/none.yaml" -o "$scratch/results/none")
+
+plan=$("$photonlab" plan "$scratch/traced.yaml" --until 'rate_se <= 0.02' 2>/dev/null)
+check 'a plan has a line for each rate' test "$(grep -c ' variance \| bias ' <<<"$plan")" = 8
+check 'it is of the error asked for' grep -q 'to 0.02' <<<"$plan"
+check_fails 'an error of zero cannot be planned for' \
+  "$photonlab" plan "$scratch/traced.yaml" --until 'rate_se <= 0'
+check 'a plan leaves nothing' test ! -e results/traced
+done_testing
