@@ -59,4 +59,18 @@ measured 'alpha = 1' 'alpha: 1' 'photons: 100' 'iterations: 9' 'runs: 2' 'radius
 measured 'a radius of 1e6 scenes' 'radius: 1e6' 'photons: 100' 'iterations: 2' 'runs: 2'
 measured 'a radius of 1e150' 'radius: 1e150' 'photons: 100' 'iterations: 2' 'runs: 2'
 measured 'a radius of 1e300' 'radius: 1e300' 'photons: 100' 'iterations: 2' 'runs: 2'
+
+# Every test, plant and stress that is said to catch a hazard is there.
+hazards=experiments/numerical-stability.hazards
+catches() { # of "FILE NAME", "PATCH" or "stress: FAMILY"
+  case $1 in
+  'stress: '*) grep -qE "^${1#stress: }," "$stress" ||
+    grep -qE "measure ${1#stress: } " experiments/numerical-stability.sh ;;
+  *.patch) test -s "$1" ;;
+  *) grep -qw -- "${1##* }" "${1%% *}" ;;
+  esac
+}
+while read -r catcher; do
+  check "there is $catcher" catches "$catcher"
+done < <(awk '!/^(#|hazard )/ { print substr($0, 62) }' $hazards | tr ';' '\n' | sed 's/^ *//' | sort -u)
 done_testing
