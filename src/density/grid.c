@@ -33,7 +33,9 @@ bool grid_radius_is_resolved(struct box bounds, double r, struct problem *proble
     largest = largest < lo ? lo : largest;
     largest = largest < hi ? hi : largest;
   }
-  double least = 100 * FLT_EPSILON * largest;
+  // Below the normal floats their spacing no longer falls with the coordinates.
+  double spacing = FLT_EPSILON * (largest < (double)FLT_MIN ? (double)FLT_MIN : largest);
+  double least = 100 * spacing;
   if (r >= least && largest / r < INT32_MAX / 2) return true;
   return problem_set(problem,
                      "radius %g is too small for a scene with coordinates up to %g: the vertices' "

@@ -129,6 +129,9 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
                        "fewer photons say the same",
                        cell->photons);
   if (!cell_radius_is_known(cell)) return true; // it is found when the points are
+  if (cell->radius * cell->radius == INFINITY)
+    return problem_set(problem, "radius %g is too large: its square is not a number any more",
+                       cell->radius);
   double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
   return grid_radius_is_resolved(scene->bounds, last, problem);
 }

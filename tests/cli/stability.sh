@@ -58,7 +58,8 @@ measured 'alpha = 0' 'alpha: 0' 'photons: 100' 'iterations: 9' 'runs: 2' 'radius
 measured 'alpha = 1' 'alpha: 1' 'photons: 100' 'iterations: 9' 'runs: 2' 'radius: 0.1'
 measured 'a radius of 1e6 scenes' 'radius: 1e6' 'photons: 100' 'iterations: 2' 'runs: 2'
 measured 'a radius of 1e150' 'radius: 1e150' 'photons: 100' 'iterations: 2' 'runs: 2'
-measured 'a radius of 1e300' 'radius: 1e300' 'photons: 100' 'iterations: 2' 'runs: 2'
+refused 'a radius whose square is beyond all numbers' 'radius 1e\+155 is too large' \
+  'radius: 1e155' 'photons: 10' 'iterations: 1' 'runs: 2'
 
 # Every test, plant and stress that is said to catch a hazard is there.
 hazards=experiments/numerical-stability.hazards

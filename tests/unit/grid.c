@@ -130,6 +130,11 @@ static void unresolved_radii_are_refused(void **state) {
   assert_string_equal(problem.text, "");
   assert_false(grid_radius_is_resolved(room, 0.0118, &problem));
   assert_non_null(strstr(problem.text, "too small"));
+  // Subnormal floats are 2^-149 = 1.4e-45 apart, whatever they are.
+  struct box speck = {{-1e-42f, 0, 0}, {1e-42f, 0, 0}};
+  struct problem of_speck = {0};
+  assert_true(grid_radius_is_resolved(speck, 1.41e-43, &of_speck));
+  assert_false(grid_radius_is_resolved(speck, 1.39e-43, &of_speck));
 }
 
 // Reflects the same everywhere, so that the sums are known.
