@@ -5,6 +5,7 @@
 #include "density/grid.h"
 #include "numeric/elementary.h"
 #include "run/look.h"
+#include "run/resolved.h"
 #include "walk/eye.h"
 
 #include <inttypes.h>
@@ -259,6 +260,7 @@ static bool plan_group(struct plan *plan, const struct group *group, struct grou
   out->measure = plan_measurement(cell, scene, out->loaded->bvh, plan->options.skip_off);
   if (!plan_pixels(out, arena, problem) || !check_probes_hit(out, *arena, problem)) return false;
   if (!plan_estimators(out, plan->experiment, arena, problem)) return false;
+  if (!resolved_at_probes(out, *arena, problem)) return false;
   plan_layout(out, arena);
   return true;
 }

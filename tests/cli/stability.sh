@@ -58,6 +58,12 @@ measured 'alpha = 0' 'alpha: 0' 'photons: 100' 'iterations: 9' 'runs: 2' 'radius
 measured 'alpha = 1' 'alpha: 1' 'photons: 100' 'iterations: 9' 'runs: 2' 'radius: 0.1'
 measured 'a radius of 1e6 scenes' 'radius: 1e6' 'photons: 100' 'iterations: 2' 'runs: 2'
 measured 'a radius of 1e150' 'radius: 1e150' 'photons: 100' 'iterations: 2' 'runs: 2'
+for reference in pixel ray-differentials knn; do
+  refused "a radius of 1e-6 by $reference" 'probe \[32, 58\]: radius .* too small' \
+    "reference-radius: $reference" 'radius: 1e-6' 'photons: 1000' 'iterations: 2' 'runs: 2'
+  measured "a radius of 1 by $reference" \
+    "reference-radius: $reference" 'radius: 1' 'photons: 1000' 'iterations: 2' 'runs: 2'
+done
 refused 'a radius whose square is beyond all numbers' 'radius 1e\+155 is too large' \
   'radius: 1e155' 'photons: 10' 'iterations: 1' 'runs: 2'
 
