@@ -4,6 +4,7 @@
 #include "analysis/outlook.h"
 #include "app/cli.h"
 #include "run/block.h"
+#include "run/pilot.h"
 #include "run/run.h"
 #include "run/series.h"
 
@@ -18,26 +19,6 @@ struct planner {
   double wanted_se;
   double total_s, needed_s;
 };
-
-// A block of runs of each cell; what bias they show needs no reference.
-static void make_pilot(struct experiment *pilot) {
-  for (int c = 0; c < pilot->n_cells; c++) {
-    struct cell *cell = &pilot->cell[c];
-    bool halves = cell->integrator->photons && cell->radius > 0 && !cell->law->count;
-    cell->reference_integrator = halves ? "richardson" : "none";
-    cell->runs = cell->runs < RUNS_PER_BLOCK ? cell->runs : RUNS_PER_BLOCK;
-    cell->n_images = cell->n_singles = cell->n_discs = 0;
-    cell->until_se = 0;
-  }
-}
-
-static struct experiment pilot_of(const struct experiment *experiment, struct arena *arena) {
-  struct experiment pilot = *experiment;
-  pilot.cell = arena_new(arena, struct cell, pilot.n_cells);
-  for (int c = 0; c < pilot.n_cells; c++) pilot.cell[c] = experiment->cell[c];
-  make_pilot(&pilot);
-  return pilot;
-}
 
 static void print_head(const struct planner *planner) {
   printf(

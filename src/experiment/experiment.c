@@ -187,14 +187,14 @@ static bool check_list(struct reader *reader, const struct level *level, const c
                     (unsigned long long)cell->iterations);
 }
 
-// Half the radius must mean half the radius at every point and iteration.
 static bool check_richardson(struct reader *reader, const struct level *level,
                              const struct cell *cell) {
-  if (!cell_has_companion(cell)) return true;
-  if (cell->integrator->photons && cell->radius > 0 && !cell->law->count) return true;
+  bool asked = cell_has_companion(cell) || cell->reference_share > 0;
+  if (!asked || cell_can_have_companion(cell)) return true;
   return problem_at(reader->reading.problem, level->value[key_number("reference")]->place,
-                    "reference: richardson needs photons and radii that no photon changes (%s, "
+                    "reference: %s needs photons and radii that no photon changes (%s, "
                     "law %s%s)",
+                    cell_has_companion(cell) ? "richardson" : "a share of the bias",
                     cell->integrator->name, cell->law->name, cell->k ? ", k" : "");
 }
 

@@ -52,6 +52,7 @@ struct cell {
   int n_discs;
   const char *reference_integrator; // "path", "analytic", "richardson" or "none"
   double reference_se;     // absolute target standard error of the reference, radiance; 0: none needed
+  double reference_share;  // or relative, of the smallest bias to be fitted; 0: reference_se
 };
 
 // The law where none is said.
@@ -69,6 +70,11 @@ static inline bool cell_radius_is_known(const struct cell *cell) {
 // Whether the cell's photons are also gathered at half the radius: reference richardson.
 static inline bool cell_has_companion(const struct cell *cell) {
   return strcmp(cell->reference_integrator, "richardson") == 0;
+}
+
+// Half the radius means half the radius at every point and iteration.
+static inline bool cell_can_have_companion(const struct cell *cell) {
+  return cell->integrator->photons && cell->radius > 0 && !cell->law->count;
 }
 
 struct experiment {

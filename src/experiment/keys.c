@@ -259,9 +259,18 @@ static bool read_reference_name(struct reading *reading, const struct node *node
   return true;
 }
 
+// A radiance, or "3%" of the smallest bias to be fitted.
 static bool read_reference_se(struct reading *reading, const struct node *node, struct cell *cell) {
-  if (!value_number(reading, node, &cell->reference_se)) return false;
-  return cell->reference_se > 0 || value_complain(reading, node, "is not positive");
+  const char *text = value_text(reading, node, "a standard error");
+  if (!text) return false;
+  size_t length = strlen(text);
+  bool share = length > 0 && text[length - 1] == '%';
+  struct node number = *node;
+  if (share) number.text = arena_string(reading->arena, text, (ptrdiff_t)length - 1);
+  double value;
+  if (!value_number(reading, &number, &value)) return false;
+  *(share ? &cell->reference_share : &cell->reference_se) = share ? value / 100 : value;
+  return value > 0 || value_complain(reading, node, "is not positive");
 }
 
 static bool read_reference_mapping(struct reading *reading, const struct node *node,
@@ -282,16 +291,17 @@ static bool read_reference_mapping(struct reading *reading, const struct node *n
 // `analytic`, `richardson`, `none`, or {integrator: path, se: 0.001}.
 bool key_read_reference(struct reading *reading, const struct node *node, struct cell *cell) {
   cell->reference_integrator = "analytic";
-  cell->reference_se = 0;
+  cell->reference_se = cell->reference_share = 0;
   if (node->kind == NODE_MAPPING ? !read_reference_mapping(reading, node, cell)
                                  : !read_reference_name(reading, node, cell))
     return false;
   bool traced = strcmp(cell->reference_integrator, "path") == 0;
-  if (traced && cell->reference_se == 0)
+  bool precise = cell->reference_se > 0 || cell->reference_share > 0;
+  if (traced && !precise)
     return problem_at(
         reading->problem, node->place,
         "reference: path needs a standard error to reach, {integrator: path, se: ...}");
-  if (!traced && cell->reference_se > 0)
+  if (!traced && precise)
     return problem_at(reading->problem, node->place, "reference: se belongs to integrator path");
   return true;
 }

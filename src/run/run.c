@@ -5,6 +5,7 @@
 #include "run/interrupt.h"
 #include "run/look.h"
 #include "run/output.h"
+#include "run/pilot.h"
 #include "run/progress.h"
 #include "run/reference.h"
 
@@ -113,8 +114,9 @@ static double references_left_s(const struct plan *plan, const char *directory,
                                 struct arena scratch) {
   double left_s = 0;
   for (int g = 0; g < plan->n_groups && !interrupt_signal(); g++)
-    left_s += reference_left_s(&plan->group[g], plan->group[g].cell,
-                               references_of(directory, &scratch), scratch);
+    left_s +=
+        reference_left_s(&plan->group[g], &plan->experiment->cell[plan->group[g].group->cell[0]],
+                         references_of(directory, &scratch), scratch);
   return left_s;
 }
 
@@ -200,6 +202,9 @@ enum run_outcome run_experiment(const struct experiment *experiment, const char 
   if (!output_set_aside(&plan, directory, *arena, problem) || !file_make_directory(folder, problem))
     return RUN_FAILED;
   interrupt_install();
+  struct experiment settled;
+  if (!pilot_settle(experiment, options, &settled, arena, problem)) return RUN_FAILED;
+  plan.experiment = &settled;
   struct units units = units_left(&plan, folder, arena);
   announce(&plan, &units, directory, *arena);
   struct probe **probe = arena_new(arena, struct probe *, experiment->n_cells);
@@ -218,6 +223,9 @@ enum run_outcome run_references(const struct experiment *experiment, const char 
   const char *directory = without_slashes(path, arena);
   if (!plan_make(experiment, options, arena, plan, problem)) return RUN_FAILED;
   interrupt_install();
+  struct experiment *settled = arena_new(arena, struct experiment, 1);
+  if (!pilot_settle(experiment, options, settled, arena, problem)) return RUN_FAILED;
+  plan->experiment = settled;
   if (probes_make(plan, directory, probe, arena, problem)) return RUN_DONE;
   return problem->text[0] ? RUN_FAILED : interrupted(references_of(directory, arena));
 }

@@ -3,6 +3,10 @@
 #define _GNU_SOURCE // mkdtemp, nftw
 #include "run_fixture.h"
 
+#include "run/pilot.h"
+
+#include <math.h>
+
 // ---- what is measured ----
 
 static void cells_that_the_integrator_cannot_tell_apart_get_the_same_values(void **state) {
@@ -49,6 +53,36 @@ static void the_default_probes_are_the_centres_of_nine_parts(void **state) {
 }
 
 // ---- references ----
+
+// The bias of the quadratic beam is known (theory 5 iii): of iteration 8 it is 0.5 / pi * 8 / pi *
+// mu_2 r^2 rho_8 / 2. 128 differences give it to about 1 %.
+static void a_reference_can_be_known_to_a_share_of_the_bias(void **state) {
+  (void)state;
+  struct experiment experiment = experiment_of(
+      "share", "scene: scenes/plane-quadratic-beam.pbrt\nradius: 0.7\nphotons: 2000\ndepth: 1\n"
+               "probes: [[32, 32]]\niterations: 8\nruns: 16\n"
+               "parts: [{reference: {integrator: path, se: 10%}}, {reference: none}]\n");
+  struct experiment settled;
+  struct problem problem = {0};
+  assert_true(pilot_settle(&experiment, quiet, &settled, &arena, &problem));
+  const double pi = 3.14159265358979323846;
+  double rho = law_find("knaus-zwicker")->rho(2.0 / 3, 8);
+  double expected = 0.1 * 0.5 / pi * 8 / pi * 0.25 * 0.49 * rho / 2;
+  assert_true(fabs(settled.cell[0].reference_se / expected - 1) < 0.05);
+  assert_true(settled.cell[1].reference_se == 0 && experiment.cell[0].reference_se == 0);
+}
+
+static void where_no_light_is_a_share_of_the_bias_is_refused(void **state) {
+  (void)state;
+  struct experiment experiment =
+      experiment_of("dark", "scene: tests/data/scenes/plane-lit-from-below.pbrt\nradius: 0.5\n"
+                            "photons: 250\ndepth: 1\nprobes: [[32, 32]]\niterations: 2\n"
+                            "reference: {integrator: path, se: 3%}\n");
+  struct experiment settled;
+  struct problem problem = {0};
+  assert_false(pilot_settle(&experiment, quiet, &settled, &arena, &problem));
+  assert_non_null(strstr(problem.text, "no light"));
+}
 
 // The only file in the cache of references.
 static const char *cached_reference(void) {
@@ -169,6 +203,8 @@ static void a_film_of_more_pixels_than_can_be_numbered_is_refused(void **state) 
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_reference_can_be_known_to_a_share_of_the_bias),
+      cmocka_unit_test(where_no_light_is_a_share_of_the_bias_is_refused),
       cmocka_unit_test(cells_that_the_integrator_cannot_tell_apart_get_the_same_values),
       cmocka_unit_test(cells_that_share_photons_keep_references_of_their_own),
       cmocka_unit_test(one_run_of_one_iteration_is_an_experiment),
