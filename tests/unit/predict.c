@@ -5,41 +5,16 @@
 #include "analysis/curve.h"
 #include "analysis/prediction.h"
 #include "tests/light_fixture.h"
+#include "tests/unit/predict_fixture.h"
 #include "walk/light_path.h"
 
 #include <math.h>
 
 static struct arena arena;
 
-static const struct integrator_type photons = {
-    .name = "probabilistic", .photons = true, .independent = true};
-
 static void assert_relative(double measured, double expected, double tolerance) {
   if (!(fabs(measured - expected) <= tolerance * fabs(expected)))
     fail_msg("%.17g, not %.17g within %g", measured, expected, tolerance);
-}
-
-static struct cell cell_of(const char *kernel, double radius) {
-  return (struct cell){.integrator = &photons,
-                       .reference_radius = &reference_radii[0],
-                       .kernel = kernel_find(kernel),
-                       .law = law_find("knaus-zwicker"),
-                       .alpha = 2.0 / 3,
-                       .radius = radius,
-                       .photons = 1000,
-                       .direct = DIRECT_PHOTONS,
-                       .depth = 64};
-}
-
-// Scaled by 1, 1 and 1: values are irradiances.
-static struct probe probe_at(double x, double y) {
-  return (struct probe){.hit = true,
-                        .p = vec(x, y, 0),
-                        .n = vec(0, 0, 1),
-                        .scale = 1,
-                        .scale_rgb = {1, 1, 1},
-                        .reference = NAN,
-                        .reference_se = NAN};
 }
 
 static struct profile profile_at(const struct scene *scene, const char *kernel, double x,

@@ -3,13 +3,11 @@
 #define _GNU_SOURCE // mkstemp
 #include "analysis/bias_family.h"
 #include "tests/light_fixture.h"
+#include "tests/unit/predict_fixture.h"
 
 #include <math.h>
 
 static struct arena arena;
-
-static const struct integrator_type photons = {
-    .name = "probabilistic", .photons = true, .independent = true};
 
 static void assert_near(double measured, double expected, double tolerance) {
   if (!(fabs(measured - expected) <= tolerance))
@@ -89,29 +87,6 @@ static void test_across(void **state) {
 }
 
 // ---- scenes ----
-
-static struct cell cell_of(const char *kernel, double radius) {
-  return (struct cell){.integrator = &photons,
-                       .reference_radius = &reference_radii[0],
-                       .kernel = kernel_find(kernel),
-                       .law = law_find("knaus-zwicker"),
-                       .alpha = 2.0 / 3,
-                       .radius = radius,
-                       .photons = 1000,
-                       .direct = DIRECT_PHOTONS,
-                       .depth = 64};
-}
-
-// Scaled by 1, 1 and 1: values are irradiances.
-static struct probe probe_at(double x, double y) {
-  return (struct probe){.hit = true,
-                        .p = vec(x, y, 0),
-                        .n = vec(0, 0, 1),
-                        .scale = 1,
-                        .scale_rgb = {1, 1, 1},
-                        .reference = NAN,
-                        .reference_se = NAN};
-}
 
 #define BEAM                                                                                       \
   "LightSource \"beam\" \"point3 from\" [0 0 2] \"point3 to\" [0 0 0] \"float radius\" 1.7 "       \
