@@ -91,25 +91,45 @@ static void take_time(struct block_time *time, struct block_time begin, int64_t 
   time->photon_bytes = time->photon_bytes < bytes ? bytes : time->photon_bytes;
 }
 
-// Adds to time[n_times].
-static void run_once(const struct group_plan *plan, void *state, uint64_t run, double *frame,
-                     struct averages *sum, double *value, struct block_time begin,
-                     struct block_time *time) {
+// What one run after the other works on.
+struct at_work {
+  const struct group_plan *plan;
+  void *state;   // the integrator's
+  double *frame; // of one iteration
+  double *value; // [width]
+  struct averages sum;
+  struct block_time *time; // [n_times], added to
+  struct progress *progress;
+  double run_work;
+};
+
+// Long runs are seen to advance, short iterations not slowed down.
+static void show_advance(const struct at_work *at, uint64_t i) {
+  enum { STEPS = 64 };
+  uint64_t n = at->plan->cell->iterations;
+  uint64_t steps = i * STEPS / n - (i - 1) * STEPS / n;
+  if (steps) progress_advance(at->progress, at->run_work * (double)steps / STEPS);
+}
+
+static void run_once(struct at_work *at, uint64_t run, struct block_time begin) {
+  const struct group_plan *plan = at->plan;
   const struct integrator_type *integrator = plan->cell->integrator;
+  struct averages *sum = &at->sum;
   memset(sum->probe, 0, (size_t)(plan->group->n_cells * plan->n_probes) * sizeof *sum->probe);
   memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
-  integrator->begin(state, run);
+  integrator->begin(at->state, run);
   int next = 0, t = 0;
   int64_t most = 0;
   for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
-    if (plan->radius_at) keep_radii(plan, i, state, value);
-    integrator->step(state, i, frame);
-    int64_t bytes = integrator->bytes ? integrator->bytes(state) : 0;
+    if (plan->radius_at) keep_radii(plan, i, at->state, at->value);
+    integrator->step(at->state, i, at->frame);
+    int64_t bytes = integrator->bytes ? integrator->bytes(at->state) : 0;
     most = most < bytes ? bytes : most;
     bool due = plan->checkpoint[next] == i;
-    keep(plan, i, due ? next : -1, frame, sum, value);
+    keep(plan, i, due ? next : -1, at->frame, sum, at->value);
     next += due;
-    if (plan_time_at(plan, t) == i) take_time(&time[t++], begin, most);
+    if (plan_time_at(plan, t) == i) take_time(&at->time[t++], begin, most);
+    show_advance(at, i);
   }
 }
 
@@ -124,20 +144,23 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
   const struct measurement *measure = &plan->measure;
   long estimate = (long)measure->n_points * measure->features.n_channels;
   long film_size = plan->n_images ? plan->group->n_cells * estimate : 0;
-  double *frame = arena_new(&scratch, double, measure->n_estimators *estimate);
-  double *value = arena_new(&scratch, double, plan->width);
-  struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
-  struct averages sum = {arena_new(&scratch, double, plan->group->n_cells * plan->n_probes),
-                         arena_new(&scratch, double, film_size), film_size};
-  struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   struct block_time begin = clock_now(); // the first run's time has what all share
+  struct at_work at = {.plan = plan,
+                       .state = plan->cell->integrator->create(measure, &scratch),
+                       .frame = arena_new(&scratch, double, measure->n_estimators *estimate),
+                       .value = arena_new(&scratch, double, plan->width),
+                       .sum = {arena_new(&scratch, double, plan->group->n_cells * plan->n_probes),
+                               arena_new(&scratch, double, film_size), film_size},
+                       .time = time,
+                       .progress = progress,
+                       .run_work = run_work};
+  struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
+  struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   memset(time, 0, (size_t)plan->n_times * sizeof *time);
-  void *state = plan->cell->integrator->create(measure, &scratch);
   for (int run = 1; run <= block_runs(plan, block); run++, begin = clock_now()) {
-    run_once(plan, state, block * RUNS_PER_BLOCK + (uint64_t)run, frame, &sum, value, begin, time);
-    for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(value[k]);
+    run_once(&at, block * RUNS_PER_BLOCK + (uint64_t)run, begin);
+    for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(at.value[k]);
     moments_tree_push(&tree, leaf, &scratch);
-    progress_advance(progress, run_work);
   }
   moments_tree_root(&tree, out);
 }

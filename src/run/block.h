@@ -13,7 +13,7 @@ struct block_time {
 };
 
 // Moments over runs 16 block + 1 ... of each of the plan's `width` numbers, and the time at each of
-// its n_times. After each run the progress advances by `run_work`.
+// its n_times. Over each run the progress advances by `run_work`.
 void block_compute(const struct group_plan *, uint64_t block, struct moments *out,
                    struct block_time *, struct progress *, double run_work, struct arena scratch);
 
