@@ -1,5 +1,6 @@
 #include "analysis/fit.h"
 
+#include "analysis/fit_methods.h"
 #include "analysis/fit_rows.h"
 #include "analysis/special.h"
 
@@ -7,7 +8,7 @@
 #include <string.h>
 
 const char *const verdict_names[N_VERDICTS] = {"agree", "disagree", "not-detected",
-                                               "not-resolvable"};
+                                               "not-resolvable", "none"};
 
 static const double family_wise_level = 0.01;
 
@@ -57,6 +58,11 @@ static void withdraw_rate(struct fit_row *row) {
   row->rate = row->rate_se = row->rate_lo = row->rate_hi = NAN;
 }
 
+static void leave_unjudged(struct fit *fit) {
+  for (int r = 0; r < fit->n_rows; r++) fit->row[r].verdict = VERDICT_NONE;
+  fit->verdict = VERDICT_NONE;
+}
+
 static void judge(struct fit *fit) {
   int n_tests = 0;
   for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests * fit->row[r].looks;
@@ -74,17 +80,23 @@ static void judge(struct fit *fit) {
 
 void fit_predicted(const struct results *results, const struct prediction *prediction,
                    struct arena *arena, struct fit *fit) {
+  fit_predicted_by(&fit_methods[0], results, prediction, arena, fit);
+}
+
+void fit_predicted_by(const struct fit_method *method, const struct results *results,
+                      const struct prediction *prediction, struct arena *arena, struct fit *fit) {
   int max_points = 0;
   for (int s = 0; s < results->n_series; s++)
     max_points += 2 * N_CURVE_SERIES * results->series[s].n_checkpoints;
   *fit = (struct fit){
       .experiment = &results->experiment,
+      .method = method,
       .row = arena_new(arena, struct fit_row, 2 * results->n_series),
       .point = arena_new(arena, struct fit_point, max_points),
   };
   for (int s = 0; s < results->n_series; s++)
-    fit_series(results, &results->series[s], &prediction[s], *arena, fit);
-  judge(fit);
+    method->series(results, &results->series[s], &prediction[s], *arena, fit);
+  method->caveat ? leave_unjudged(fit) : judge(fit);
 }
 
 // ---- predictions for a results directory ----
@@ -171,6 +183,11 @@ static bool check_finite(const struct results *results, const struct series *ser
 
 bool fit_results(const struct results *results, struct arena *arena, struct fit *fit,
                  struct problem *problem) {
+  return fit_results_by(&fit_methods[0], results, arena, fit, problem);
+}
+
+bool fit_results_by(const struct fit_method *method, const struct results *results,
+                    struct arena *arena, struct fit *fit, struct problem *problem) {
   struct shared shared = {0};
   struct prediction *prediction = arena_new(arena, struct prediction, results->n_series);
   for (int s = 0; s < results->n_series; s++) {
@@ -183,7 +200,7 @@ bool fit_results(const struct results *results, struct arena *arena, struct fit 
     prediction[s] =
         prediction_new(scene, cell, &results->probe[series->cell][series->probe], family, arena);
   }
-  fit_predicted(results, prediction, arena, fit);
+  fit_predicted_by(method, results, prediction, arena, fit);
   return true;
 }
 

@@ -15,6 +15,7 @@ enum verdict {
   VERDICT_DISAGREE,       // a test rejects theory at the level of the run
   VERDICT_NOT_DETECTED,   // bias: nothing found; upper_bound says how much there may be
   VERDICT_NOT_RESOLVABLE, // too little is known of the rate to judge it
+  VERDICT_NONE,           // the method's standard errors support none
   N_VERDICTS
 };
 extern const char *const verdict_names[N_VERDICTS];
@@ -30,7 +31,7 @@ enum { FIT_TESTS = 4 };
 // of Var(average of N) ~ N^-a, coefficient A [radiance^2], the variance of the first iteration
 // without its part that stays constant. Bias: |bias of iteration i| ~ i^-rate, coefficient b_1
 // [radiance], the bias of the first iteration (without a closed form: the part of it that is
-// proportional to r^2).
+// proportional to r^2). A method may mean slopes of curves by its rates (fit_methods.h).
 struct fit_row {
   const struct cell *cell;
   const struct probe *probe;
@@ -60,8 +61,10 @@ struct fit_point {
   double predicted; // NAN: theory says nothing of some of these iterations
 };
 
+struct fit_method;
 struct fit {
   const struct experiment *experiment;
+  const struct fit_method *method;
   double level;      // family-wise: the chance that any test of the run rejects a true theory
   double test_level; // of one test (Sidak)
   struct fit_row *row;
@@ -74,9 +77,13 @@ struct fit {
 // Reads the scenes of the experiment for their closed forms; one that was changed since the run is
 // a problem, and so is a value that is not finite.
 bool fit_results(const struct results *, struct arena *, struct fit *, struct problem *);
+bool fit_results_by(const struct fit_method *, const struct results *, struct arena *, struct fit *,
+                    struct problem *);
 
 // The same with predictions in hand, one per series (in results' order).
 void fit_predicted(const struct results *, const struct prediction *, struct arena *, struct fit *);
+void fit_predicted_by(const struct fit_method *, const struct results *, const struct prediction *,
+                      struct arena *, struct fit *);
 
 // The largest standard error of the rates that theory says there are (run_options).
 double fit_largest_rate_se(const struct results *, struct arena scratch, struct problem *);

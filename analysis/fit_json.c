@@ -1,4 +1,5 @@
 // fit.json and curves.csv.
+#include "analysis/fit_methods.h"
 #include "analysis/fit_rows.h"
 
 #include "base/file.h"
@@ -77,6 +78,8 @@ bool fit_write_json(const struct fit *fit, const char *path, struct problem *pro
   json_t *root = json_object(), *cells = json_array();
   set(root, "experiment", json_string(fit->experiment->name));
   set(root, "quality", json_string(fit->experiment->quality));
+  set(root, "method", json_string(fit->method->name));
+  if (fit->method->caveat) set(root, "caveat", json_string(fit->method->caveat));
   set(root, "level", number(fit->level));
   set(root, "test_level", number(fit->test_level));
   set(root, "verdict", json_string(verdict_names[fit->verdict]));

@@ -127,58 +127,83 @@ static bool reference_dominates(const struct prediction *theory, const struct se
   return without.measured && b->coefficient_se >= sqrt(2) * without.coefficient_se;
 }
 
-static void fit_bias_series(const struct results *results, const struct series *series,
-                            const struct prediction *theory, const struct variance_fit *v,
-                            double dependence, struct arena scratch, struct fit *fit) {
+static void fit_bias_series(const struct fit_estimators *by, const struct results *results,
+                            const struct series *series, const struct prediction *theory,
+                            const struct variance_fit *v, double dependence, struct arena scratch,
+                            struct fit *fit) {
   struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
   struct bias_fit b = {0};
   if (!v->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
   row->why = v->why || isfinite(theory->truth) ? v->why : fit_no_reference;
   if (!row->why && theory->bias_kind == BIAS_STAYS) row->why = "an edge stays in the disc";
-  bias_row(&b, v, theory, row);
+  struct bias_fit said = b;
+  if (b.measured && by) by->bias(theory, series, weights_of(v), v, &said, scratch);
+  bias_row(&said, v, theory, row);
   if (!row->why && !row->resolved && reference_dominates(theory, series, v, &b, scratch))
     row->why = fit_noisy_reference;
-  if (theory->independent && b.measured) {
+  if (theory->independent && said.measured) {
     add_deviate(row, "independence", dependence); // its standard errors rest on it
-    if (b.lack_of_fit.dof >= 1)
-      add_test(row, "lack-of-fit", b.lack_of_fit.value,
-               special_f_upper(b.lack_of_fit.value, b.lack_of_fit.dof, v->dof));
+    if (said.lack_of_fit.dof >= 1)
+      add_test(row, "lack-of-fit", said.lack_of_fit.value,
+               special_f_upper(said.lack_of_fit.value, said.lack_of_fit.dof, v->dof));
   }
   fit_bias_points(series, theory, v, &b, row, fit);
 }
 
+// Their variances are not known.
+static struct moments *means_of_averages(const struct series *series,
+                                         const struct moments *iteration, struct arena *arena) {
+  struct moments *average = arena_new(arena, struct moments, series->n_checkpoints);
+  double sum = 0;
+  uint64_t j = 0;
+  for (int c = 0; c < series->n_checkpoints; c++) {
+    for (; j < series->checkpoint[c]; j++) sum += iteration[j].mean;
+    average[c] = (struct moments){iteration[0].n, sum / (double)j, NAN, NAN, NAN};
+  }
+  return average;
+}
+
 // Against the same photons at half the radius: the differences of the iterations are a series of
 // their own, with a variance of the usual shape.
-static void fit_richardson(const struct results *results, const struct series *series,
-                           const struct prediction *theory, double dependence, struct arena scratch,
-                           struct fit *fit) {
+static void fit_richardson(const struct fit_estimators *by, const struct results *results,
+                           const struct series *series, const struct prediction *theory,
+                           double dependence, struct arena scratch, struct fit *fit) {
   struct series difference = *series;
   difference.iteration = series->richardson;
+  difference.average = means_of_averages(series, series->richardson, &scratch);
   struct prediction shape = prediction_from_reference(0, 0, theory->d, &theory->family, &scratch);
   struct prediction bias = prediction_of_richardson(theory);
   shape.first = theory->first;
   struct variance_fit v = fit_variance(&shape, series->richardson, &scratch);
-  fit_bias_series(results, &difference, &bias, &v, dependence, scratch, fit);
+  fit_bias_series(by, results, &difference, &bias, &v, dependence, scratch, fit);
 }
 
 void fit_series(const struct results *results, const struct series *series,
                 const struct prediction *theory, struct arena scratch, struct fit *fit) {
+  fit_series_by(NULL, results, series, theory, scratch, fit);
+}
+
+void fit_series_by(const struct fit_estimators *by, const struct results *results,
+                   const struct series *series, const struct prediction *theory,
+                   struct arena scratch, struct fit *fit) {
   const struct cell *cell = &results->experiment.cell[series->cell];
   struct variance_fit v = fit_variance(theory, series->iteration, &scratch);
   double ratio, dependence = fit_independence(&v, series, &ratio);
   if (cell->quantities & QUANTITY_VARIANCE) {
     struct fit_row *row = new_row(results, series, theory, QUANTITY_VARIANCE, fit);
-    row->why = v.why;
-    variance_row(&v, theory, row);
+    struct variance_fit said = v;
+    if (!v.why && by) said.why = by->variance(theory, series, weights_of(&v), &said, scratch);
+    row->why = said.why;
+    variance_row(&said, theory, row);
     if (theory->independent) add_deviate(row, "independence", dependence);
-    if (theory->independent && !v.why && v.lack_of_fit.dof >= 1)
-      add_test(row, "lack-of-fit", v.lack_of_fit.value,
-               special_chi2_upper(v.lack_of_fit.value, v.lack_of_fit.dof));
+    if (theory->independent && !said.why && said.lack_of_fit.dof >= 1)
+      add_test(row, "lack-of-fit", said.lack_of_fit.value,
+               special_chi2_upper(said.lack_of_fit.value, said.lack_of_fit.dof));
     fit_variance_points(series, &v, row, fit);
   }
   if (!(cell->quantities & QUANTITY_BIAS)) return;
   if (series->richardson)
-    fit_richardson(results, series, theory, dependence, scratch, fit);
+    fit_richardson(by, results, series, theory, dependence, scratch, fit);
   else
-    fit_bias_series(results, series, theory, &v, dependence, scratch, fit);
+    fit_bias_series(by, results, series, theory, &v, dependence, scratch, fit);
 }

@@ -1,7 +1,7 @@
 // The table on the terminal. Columns that are the same in every row are left out.
 #define _POSIX_C_SOURCE 200809L // fileno, isatty
 
-#include "analysis/fit.h"
+#include "analysis/fit_methods.h"
 #include "experiment/cell_keys.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ static void print_rate(const struct fit_row *row, char *text) {
 }
 static void print_interval(const struct fit_row *row, char *text) {
   copy(text, "");
-  if (isfinite(row->rate)) snprintf(text, CELL_SIZE, "[%.3f, %.3f]", row->rate_lo, row->rate_hi);
+  if (isfinite(row->rate_lo)) snprintf(text, CELL_SIZE, "[%.3f, %.3f]", row->rate_lo, row->rate_hi);
 }
 static void print_ratio(const struct fit_row *row, char *text) {
   copy(text, "-");
@@ -125,7 +125,7 @@ static struct setting column_setting(const struct fit *fit, int c) {
 }
 
 static const char *colour_of(enum verdict verdict) {
-  static const char *const colours[] = {"\033[32m", "\033[31m", "\033[33m", "\033[33m"};
+  static const char *const colours[] = {"\033[32m", "\033[31m", "\033[33m", "\033[33m", "\033[33m"};
   return colours[verdict];
 }
 
@@ -181,5 +181,8 @@ void fit_print_table(const struct fit *fit, FILE *stream) {
   fprintf(stream, "%s: %s%s%s (", fit->experiment->name, colour ? colour_of(fit->verdict) : "",
           verdict_names[fit->verdict], colour ? "\033[0m" : "");
   print_counts(fit, stream);
-  fprintf(stream, "; family-wise level %g, each test at %.2g)\n", fit->level, fit->test_level);
+  if (fit->method->caveat)
+    fprintf(stream, "; %s: %s)\n", fit->method->name, fit->method->caveat);
+  else
+    fprintf(stream, "; family-wise level %g, each test at %.2g)\n", fit->level, fit->test_level);
 }

@@ -7,6 +7,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_randist.h>
+#include <gsl/gsl_sf_psi.h>
 #include <gsl/gsl_sf_zeta.h>
 #include <math.h>
 #include <stdbool.h>
@@ -77,6 +78,10 @@ double special_gamma_quantile(double lower, double relative_variance) {
   }
   return exp((lo + hi) / 2);
 }
+
+double special_digamma(double x) { return gsl_sf_psi(x); }
+
+double special_trigamma(double x) { return gsl_sf_psi_1(x); }
 
 double special_zeta(int k) {
   gsl_set_error_handler_off();

@@ -18,6 +18,8 @@ double special_gamma_deviate(double ratio, double relative_variance);
 double special_gamma_quantile(double lower, double relative_variance);
 
 double special_zeta(int k); // k >= 2
+double special_digamma(double x);
+double special_trigamma(double x); // x > 0
 
 // n-point Gauss-Legendre on [0, 1]; n one of those GSL tables to full precision (64, 96, 100, ...).
 void special_gauss_legendre(int n, double *x, double *weight);

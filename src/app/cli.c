@@ -1,5 +1,6 @@
 #include "app/cli.h"
 
+#include "analysis/fit_methods.h"
 #include "base/version.h"
 #include "experiment/keys.h"
 #include "pbrt/suggest.h"
@@ -37,6 +38,13 @@ static bool take_csv(struct cli *cli, const char *text, struct problem *problem)
   (void)text, (void)problem;
   cli->csv = true;
   return true;
+}
+
+static bool take_method(struct cli *cli, const char *text, struct problem *problem) {
+  cli->method = fit_method_find(text);
+  return cli->method ||
+         problem_set(problem, "--method: there is no method '%s' (photonlab list fit-methods)",
+                     text);
 }
 
 static bool take_lenient(struct cli *cli, const char *text, struct problem *problem) {
@@ -86,6 +94,7 @@ static const struct option options[] = {
     {"maxdepth", "N", "depth", "most scatterings of a path, as in pbrt", NULL},
     {"pixel", "WHERE", "pixel", "centre or footprint", NULL},
     {"hit-points", "N", "hit-points", "ppm: points of its one eye pass in each pixel", NULL},
+    {"method", "NAME", NULL, "see 'photonlab list fit-methods'; default likelihood", take_method},
     {"csv", NULL, NULL, "comma-separated values instead of a table", take_csv},
     {"dimension", "D", "dimension", "1 (beams), 2 (surfaces) or 3 (points in a volume)", NULL},
     {"lambda", "L", "lambda", "photons expected in the first disc", NULL},

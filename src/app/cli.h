@@ -13,7 +13,8 @@ struct cli {
   const char *argument;   // the file or directory the command is about, or NULL
   const char **arguments; // all of them, where a command takes more than one
   int n_arguments;
-  const char *output, *quality; // NULL: not said
+  const char *output, *quality;    // NULL: not said
+  const struct fit_method *method; // NULL: not said
   bool csv;
   struct run_options options;
   struct cli_setting { // keys of an experiment, in the order given

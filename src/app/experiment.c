@@ -1,5 +1,6 @@
 // photonlab run, fit, plot: an experiment from its file to its figure.
 #define _GNU_SOURCE // readlink
+#include "analysis/fit_methods.h"
 #include "analysis/fit_radii.h"
 #include "app/cli.h"
 #include "app/pixels.h"
@@ -35,15 +36,21 @@ static int run(struct cli *cli, struct problem *problem) {
   }
 }
 
+// The figure's curves are those of the iterations' fits: another method leaves them alone.
+static bool write_curves(const struct cli *cli, const struct fit *fit, struct problem *problem) {
+  return fit->method != &fit_methods[0] ||
+         fit_write_curves(fit, arena_format(cli->arena, "%s/curves.csv", cli->argument), problem);
+}
+
 static int fit(struct cli *cli, struct problem *problem) {
+  const struct fit_method *method = cli->method ? cli->method : &fit_methods[0];
   struct results results;
   struct fit fit;
   struct fit_radii radii;
   if (!results_read(cli->argument, cli->arena, &results, problem) ||
-      !fit_results(&results, cli->arena, &fit, problem) ||
+      !fit_results_by(method, &results, cli->arena, &fit, problem) ||
       !fit_write_json(&fit, arena_format(cli->arena, "%s/fit.json", cli->argument), problem) ||
-      !fit_write_curves(&fit, arena_format(cli->arena, "%s/curves.csv", cli->argument), problem) ||
-      !fit_radii(&results, cli->arena, &radii, problem) ||
+      !write_curves(cli, &fit, problem) || !fit_radii(&results, cli->arena, &radii, problem) ||
       !fit_radii_write(&radii, arena_format(cli->arena, "%s/radii.csv", cli->argument), problem))
     return 1;
   fit_print_table(&fit, stdout);
@@ -95,8 +102,8 @@ const struct command command_run = {"run", "EXPERIMENT",
                                     "output threads quiet no-skip lenient quality seed", run};
 
 const struct command command_fit = {
-    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv, radii.csv", "",
-    fit};
+    "fit", "DIR", "fits rates to the results in DIR: table, fit.json, curves.csv, radii.csv",
+    "method", fit};
 
 const struct command command_plot = {
     "plot", "DIR", "draws the experiment's figure from the results in DIR", "", plot};

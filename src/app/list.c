@@ -1,5 +1,6 @@
 // photonlab list, info, validate: what is registered, what a scene holds, whether the tables are
 // right.
+#include "analysis/fit_methods.h"
 #include "app/cli.h"
 #include "app/stability.h"
 #include "app/validate.h"
@@ -90,6 +91,11 @@ static void list_skips(void) {
     printf("  %-15s %s\n", skip_rows[k].name, skip_rows[k].about);
 }
 
+static void list_fit_methods(void) {
+  for (int k = 0; k < n_fit_methods; k++)
+    printf("  %-15s %s\n", fit_methods[k].name, fit_methods[k].about);
+}
+
 static void list_experiment(void) {
   for (int k = 0; k < n_experiment_keys; k++)
     printf("  %-17s %-24s %s\n", experiment_keys[k].name, experiment_keys[k].fallback,
@@ -119,6 +125,8 @@ static const struct {
     {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
     {"views", "light paths: L light, S delta lobe, D any other scattering, E eye", list_views},
     {"skips", "what is left out where a scene does not need it", list_skips},
+    {"fit-methods", "how rates are found; no bootstrap, as the log keeps moments and not the runs",
+     list_fit_methods},
     {"experiment", "keys of an experiment file: name, default, meaning", list_experiment},
     {"log", "columns of log.csv: name, unit, meaning", list_log},
 };

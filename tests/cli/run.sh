@@ -95,6 +95,13 @@ check 'fit.json is there' test -s "$scratch/two/fit.json"
 cp "$scratch/two/fit.json" "$scratch/kept"
 "$photonlab" fit "$scratch/two" > /dev/null
 check 'fit gives the same bytes twice' cmp "$scratch/two/fit.json" "$scratch/kept"
+cp "$scratch/two/curves.csv" "$scratch/curves"
+"$photonlab" fit "$scratch/two" --method ols > "$scratch/said"
+check 'fit.json says which method was used' grep -q '"method": "ols"' "$scratch/two/fit.json"
+check 'a straight line has no verdict, and says why' grep -q 'none (.*; ols: .* cover 56 %' "$scratch/said"
+check 'another method leaves the curves alone' cmp "$scratch/two/curves.csv" "$scratch/curves"
+"$photonlab" fit "$scratch/two" > /dev/null
+check 'the default method comes back' cmp "$scratch/two/fit.json" "$scratch/kept"
 
 # One line, status 1 (2: usage), nothing left behind.
 refuses() { # refuses SENTENCE STATUS PATTERN COMMAND...
@@ -152,6 +159,7 @@ refuses 'an option out of range' 1 'alpha' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --alpha 1.5
 refuses 'a results directory that cannot be made' 1 'file' \
   "$photonlab" run "$(experiment g)" -o "$scratch/small.yaml/x"
+refuses 'a method that is none' 1 "no method 'bootstrap'" "$photonlab" fit "$scratch/two" --method bootstrap
 refuses 'fit of what is no results directory' 1 'manifest' "$photonlab" fit "$scratch"
 refuses 'more photons than memory holds' 1 'photons: 1000000000000' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --photons 1e12

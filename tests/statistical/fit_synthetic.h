@@ -5,6 +5,7 @@
 
 #include "analysis/fit.h"
 #include "numeric/rng.h"
+#include "run/plan.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,6 +27,7 @@ struct synthetic {
   bool black;          // every value is 0
   double reference_se; // without closed form: the reference is off by a draw of this
   bool closed_form;
+  bool log_checkpoints; // those of log.csv, ten a decade, instead of the middle and the end
 };
 
 static const struct integrator_type synthetic_integrator = {
@@ -109,14 +111,22 @@ static inline struct prediction synthetic_prediction(const struct synthetic *s,
   return prediction_from_profile(&profile, 1, 1e9, 0, family, arena);
 }
 
+static inline uint64_t *synthetic_checkpoints(const struct synthetic *s, int *count,
+                                              struct arena *arena) {
+  if (s->log_checkpoints) return plan_checkpoints(s->iterations, count, arena);
+  uint64_t *checkpoint = arena_new(arena, uint64_t, 2);
+  checkpoint[0] = (s->iterations + 1) / 2, checkpoint[1] = s->iterations;
+  *count = s->iterations > 1 ? 2 : 1;
+  return checkpoint;
+}
+
 static inline struct series synthetic_series(const struct synthetic *s, const double *rho,
                                              uint64_t experiment, struct arena *arena) {
   uint64_t n = s->iterations;
-  struct series series = {.n_iterations = n, .n_checkpoints = n > 1 ? 2 : 1};
+  struct series series = {.n_iterations = n};
   series.iteration = arena_new(arena, struct moments, (ptrdiff_t)n);
-  series.average = arena_new(arena, struct moments, 2);
-  series.checkpoint = arena_new(arena, uint64_t, 2);
-  series.checkpoint[0] = (n + 1) / 2, series.checkpoint[1] = n;
+  series.checkpoint = synthetic_checkpoints(s, &series.n_checkpoints, arena);
+  series.average = arena_new(arena, struct moments, series.n_checkpoints);
   for (uint64_t run = 1; run <= s->runs; run++) {
     struct stream stream = {rng_key(rng_hash_name(s->name) + experiment, run, RNG_TEST), 0};
     double sum = 0;
@@ -133,14 +143,20 @@ static inline struct series synthetic_series(const struct synthetic *s, const do
   return series;
 }
 
-// One cell at one probe, fitted. The prediction is the same for all experiments but for the truth.
-static inline struct fit synthetic_fit_with(const struct synthetic *s,
-                                            const struct prediction *theory, uint64_t experiment,
-                                            struct arena *arena) {
+// The prediction is the same for all experiments but for the truth.
+static inline struct prediction *synthetic_truth(const struct synthetic *s,
+                                                 const struct prediction *theory,
+                                                 uint64_t experiment, struct arena *arena) {
   struct stream off = {rng_key(rng_hash_name(s->name) + experiment, 0, RNG_REFERENCE), 0};
   struct prediction *prediction = arena_new(arena, struct prediction, 1);
   *prediction = *theory;
   if (s->reference_se > 0) prediction->truth = 1 + s->reference_se * stream_normal(&off);
+  return prediction;
+}
+
+// One cell at one probe.
+static inline struct results *synthetic_results(const struct synthetic *s, const double *rho,
+                                                uint64_t experiment, struct arena *arena) {
   struct results *results = arena_new(arena, struct results, 1);
   struct cell *cell = arena_new(arena, struct cell, 1);
   *cell = (struct cell){.scene = "synthetic",
@@ -155,15 +171,22 @@ static inline struct fit synthetic_fit_with(const struct synthetic *s,
   probe[0] = arena_new(arena, struct probe, 1);
   probe[0]->hit = true;
   struct series *series = arena_new(arena, struct series, 1);
-  *series = synthetic_series(s, prediction->family.rho, experiment, arena);
+  *series = synthetic_series(s, rho, experiment, arena);
   *results = (struct results){
       .directory = "synthetic",
       .experiment = {.name = s->name, .quality = "default", .cell = cell, .n_cells = 1},
       .probe = probe,
       .series = series,
       .n_series = 1};
+  return results;
+}
+
+static inline struct fit synthetic_fit_with(const struct synthetic *s,
+                                            const struct prediction *theory, uint64_t experiment,
+                                            struct arena *arena) {
+  struct results *results = synthetic_results(s, theory->family.rho, experiment, arena);
   struct fit fit;
-  fit_predicted(results, prediction, arena, &fit);
+  fit_predicted(results, synthetic_truth(s, theory, experiment, arena), arena, &fit);
   return fit;
 }
 

@@ -80,6 +80,7 @@ struct key {
 
 static const struct key top_keys[] = {{"experiment", STRING},
                                       {"quality", STRING},
+                                      {"method", STRING},
                                       {"level", NUMBER},
                                       {"test_level", NUMBER},
                                       {"verdict", STRING},
