@@ -67,7 +67,7 @@ static void judge(struct fit *fit) {
   int n_tests = 0;
   for (int r = 0; r < fit->n_rows; r++) n_tests += fit->row[r].n_tests * fit->row[r].looks;
   fit->level = family_wise_level;
-  fit->test_level = n_tests ? -expm1(log1p(-fit->level) / n_tests) : fit->level;
+  fit->test_level = special_sidak(fit->level, n_tests);
   for (int r = 0; r < fit->n_rows; r++) {
     struct fit_row *row = &fit->row[r];
     for (int t = 0; t < row->n_tests; t++) row->test[t].rejects = row->test[t].p < fit->test_level;
@@ -140,15 +140,9 @@ static const struct scene *shared_scene(struct shared *shared, const struct resu
   return &known->scene;
 }
 
-// Radii that follow the photons found do so as their law's closed form, but for a constant that
-// tends to one with the photons in the first disc (theory 2.4).
-static const struct law *law_of(const struct cell *cell) {
-  return cell->integrator->photons ? cell->law : NULL;
-}
-
 static const struct family *shared_family(struct shared *shared, const struct cell *cell,
                                           uint64_t n, struct arena *arena) {
-  const struct law *law = law_of(cell);
+  const struct law *law = prediction_law(cell);
   for (ptrdiff_t k = 0; k < shared->families.count; k++) {
     struct known_family *known = &shared->families.item[k];
     if (known->family.table->law == law && known->family.n == n && known->alpha == cell->alpha)

@@ -41,7 +41,7 @@ static void test(struct radius_row *row) {
 static void judge(struct fit_radii *fit) {
   int n_tests = 0;
   for (ptrdiff_t k = 0; k < fit->count; k++) n_tests += !isnan(fit->item[k].p);
-  fit->test_level = n_tests ? -expm1(log1p(-family_wise_level) / n_tests) : family_wise_level;
+  fit->test_level = special_sidak(family_wise_level, n_tests);
   for (ptrdiff_t k = 0; k < fit->count; k++) {
     struct radius_row *row = &fit->item[k];
     row->verdict = isnan(row->p)              ? VERDICT_NOT_RESOLVABLE

@@ -209,6 +209,18 @@ static struct family expected_family(const struct scene *scene, const struct cel
   return own;
 }
 
+const struct law *prediction_law(const struct cell *cell) {
+  return cell->integrator->photons ? cell->law : NULL;
+}
+
+struct family *prediction_family(const struct cell *cell, struct arena *arena) {
+  struct family_table *table = arena_new(arena, struct family_table, 1);
+  struct family *family = arena_new(arena, struct family, 1);
+  *table = family_table_new(prediction_law(cell), cell->iterations, arena);
+  *family = family_new(table, cell->alpha, arena);
+  return family;
+}
+
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {

@@ -37,7 +37,7 @@ struct prediction {
   bool independent; // of each other; else radii follow the photons found, are those expected in
                     // closed form, else the law's, and exponents are predicted but constants are
                     // not (theory 2.4)
-  bool unbiased; // theory's bias is zero for every radius
+  bool unbiased;    // theory's bias is zero for every radius
   enum bias_kind bias_kind;
   uint64_t bias_end;           // of BIAS_ENDS: iterations that have a bias
   double truth, truth_se;      // radiance; NAN if there is nothing to measure bias against
@@ -48,6 +48,12 @@ struct prediction {
   const double *kurtosis;                        // [n], excess, of one value; NULL if unknown
   const double *richardson; // [n], in closed form: 4/3 of what half the radius takes off `bias`
 };
+
+// The law of a cell's radii; NULL, constant, where no photons are stored. Radii that follow the
+// photons found do so as their law's closed form, but for a constant that tends to one with the
+// photons in the first disc (theory 2.4).
+const struct law *prediction_law(const struct cell *);
+struct family *prediction_family(const struct cell *, struct arena *);
 
 // `scene` is only asked for a closed form. The family must outlive the prediction.
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,

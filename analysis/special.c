@@ -136,3 +136,5 @@ void special_gauss_binomial(int n, double p, double trials, double *m, double *w
   gsl_matrix_free(vectors);
   gsl_matrix_free(jacobi);
 }
+
+double special_sidak(double level, int n) { return n ? -expm1(log1p(-level) / n) : level; }

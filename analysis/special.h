@@ -28,4 +28,7 @@ void special_gauss_legendre(int n, double *x, double *weight);
 double special_binomial(double m, double p, double trials);
 void special_gauss_binomial(int n, double p, double trials, double *m, double *weight);
 
+// The level of each of n tests that together reject a true theory with this probability (Sidak).
+double special_sidak(double level, int n);
+
 #endif

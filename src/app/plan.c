@@ -3,7 +3,6 @@
 // it is not.
 #include "analysis/outlook.h"
 #include "app/cli.h"
-#include "run/block.h"
 #include "run/pilot.h"
 #include "run/run.h"
 #include "run/series.h"
@@ -85,11 +84,7 @@ static struct prediction *predict(const struct planner *planner, const struct gr
   plan_probes(group, probe, *arena);
   for (int c = 0; c < group->group->n_cells; c++) {
     const struct cell *cell = &planner->experiment->cell[group->group->cell[c]];
-    struct family_table *table = arena_new(arena, struct family_table, 1);
-    struct family *family = arena_new(arena, struct family, 1);
-    *table =
-        family_table_new(cell->integrator->photons ? cell->law : NULL, cell->iterations, arena);
-    *family = family_new(table, cell->alpha, arena);
+    const struct family *family = prediction_family(cell, arena);
     for (int p = 0; p < n_probes; p++)
       theory[c * n_probes + p] =
           prediction_new(&group->loaded->scene, cell, &probe[p], family, arena);
@@ -104,12 +99,9 @@ static void plan_group_out(struct planner *planner, int g, struct arena scratch)
   double run_s = run_seconds(group, scratch), most = 0;
   struct moments *moments = NULL;
   if (needs_pilot(planner, group, theory)) {
-    struct block_time *time = arena_new(&scratch, struct block_time, group->n_times);
-    struct progress silent = {.quiet = true};
-    moments = arena_new(&scratch, struct moments, group->width);
     fprintf(stderr, "photonlab: a pilot of %s, about %.0f s\n", group->cell->scene,
             run_s * (double)group->runs);
-    block_compute(group, 0, moments, time, &silent, 0, scratch);
+    moments = pilot_run(group, &scratch);
   }
   for (int k = 0; k < n; k++) {
     struct series series = {.cell = group->group->cell[k / n_probes], .probe = k % n_probes};

@@ -24,6 +24,15 @@ struct experiment pilot_of(const struct experiment *experiment, struct arena *ar
   return pilot;
 }
 
+struct moments *pilot_run(const struct group_plan *group, struct arena *arena) {
+  struct moments *moments = arena_new(arena, struct moments, group->width);
+  struct arena scratch = *arena;
+  struct block_time *time = arena_new(&scratch, struct block_time, group->n_times);
+  struct progress silent = {.quiet = true};
+  block_compute(group, 0, moments, time, &silent, 0, scratch);
+  return moments;
+}
+
 // The bias of iteration 1 and its standard error, by least squares: an iteration's bias is as rho,
 // its variance as 1 / rho.
 struct bias {
@@ -63,10 +72,7 @@ static bool asks(const struct group_plan *group, const struct experiment *experi
 static bool settle_group(const struct group_plan *group, struct run_options options,
                          struct experiment *settled, struct arena scratch,
                          struct problem *problem) {
-  struct progress silent = {.quiet = true};
-  struct moments *moments = arena_new(&scratch, struct moments, group->width);
-  struct block_time *time = arena_new(&scratch, struct block_time, group->n_times);
-  block_compute(group, 0, moments, time, &silent, 0, scratch);
+  struct moments *moments = pilot_run(group, &scratch);
   for (int c = 0; c < group->group->n_cells; c++) {
     struct cell *cell = &settled->cell[group->group->cell[c]];
     if (!(cell->reference_share > 0)) continue;

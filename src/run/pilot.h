@@ -8,6 +8,9 @@
 // radii allow it, else none.
 struct experiment pilot_of(const struct experiment *, struct arena *);
 
+// The moments of the pilot's block of one group.
+struct moments *pilot_run(const struct group_plan *, struct arena *);
+
 // References that are to be known to a share of the smallest bias get a standard error: that of the
 // last iteration, at the probes where a bias is seen by two standard errors, if none is of two
 // standard errors themselves. A bias proportional to r^2 is assumed. `settled` is the experiment

@@ -14,12 +14,8 @@ static struct prediction predict(const char *name, const char *yaml,
   struct plan plan = plan_of(experiment);
   const struct cell *cell = &experiment->cell[0];
   struct probe *probe = arena_new(&arena, struct probe, 1);
-  struct family_table *table = arena_new(&arena, struct family_table, 1);
-  struct family *family = arena_new(&arena, struct family, 1);
   plan_probes(&plan.group[0], probe, arena);
-  *table = family_table_new(cell->law, cell->iterations, &arena);
-  *family = family_new(table, cell->alpha, &arena);
-  return prediction_new(&plan.scene[0].scene, cell, probe, family, &arena);
+  return prediction_new(&plan.scene[0].scene, cell, probe, prediction_family(cell, &arena), &arena);
 }
 
 static double relative(double a, double b) { return fabs(a / b - 1); }
