@@ -44,9 +44,8 @@ const struct experiment_key experiment_keys[] = {
     {"discs", "(none)", "i after which run 1's points and their own radii are kept (ppm, sppm)",
      false, key_read_discs},
     {"reference", "analytic",
-     "bias against: analytic, richardson (the same photons at half the radius), none or "
-     "{integrator: "
-     "path, se: 0.001}",
+     "bias against: analytic, none, richardson (the same photons at half the radius) or "
+     "{integrator: path, se: 0.001}; se: 3% is of the smallest bias to be fitted",
      false, key_read_reference},
     {"parts", "(one)", "list of mappings, each an experiment that inherits the keys above it",
      false, NULL},

@@ -15,7 +15,8 @@ struct probe {
   int x, y;
   bool hit;        // false: the ray leaves the scene
   struct vec p, n; // world; n on the side of the eye
-  double scale;    // radiance per irradiance there, f_r (1/sr) of a diffuse surface, luminance
+  double scale;    // radiance in the pixel per irradiance there, luminance: f_r (1/sr) of a diffuse
+                   // surface, times what mirrors on the way to the eye leave
   double scale_rgb[3];
   double emitted;                 // radiance emitted towards the eye, luminance
   double reference, reference_se; // radiance, luminance; NAN where there is none

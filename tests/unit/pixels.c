@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 static struct arena arena;
-static char folder[] = "/tmp/photonlab-pixels-XXXXXX";
+static char folder[] = P_tmpdir "/photonlab-pixels-XXXXXX";
 
 static void a_table_has_the_pixels_of_its_image(void **state) {
   (void)state;

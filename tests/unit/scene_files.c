@@ -10,7 +10,7 @@
 
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0]\n"
 
-static char folder[] = "/tmp/photonlab-scene-XXXXXX";
+static char folder[] = P_tmpdir "/photonlab-scene-XXXXXX";
 
 static char *path_of(const char *name) {
   return arena_format(&test_memory()->lists, "%s/%s", folder, name);
