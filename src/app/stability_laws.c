@@ -10,8 +10,9 @@
 enum { N_DECADES = 15, SHORT = 1000 };
 
 // rho of knaus-zwicker at i = 10, 100, ..., 1e15 (Gamma functions in 60-digit arithmetic); alpha is
-// the double nearest to what is written. The smallest, 1e-12, is that of theory's own table (appendix
-// A): there the form 1 / (B(alpha, i) alpha i) has lost all its digits. The largest is the double below 1.
+// the double nearest to what is written. The smallest, 1e-12, is that of theory's own table
+// (appendix A): there the form 1 / (B(alpha, i) alpha i) has lost all its digits. The largest is
+// the double below 1.
 static const struct golden {
   double alpha, rho[N_DECADES];
 } golden[] = {
@@ -146,7 +147,7 @@ static double end_minus_bound(double end, double x) {
   return 4e-15;
 }
 
-// Distances from 0 and 1 go down to 1e-16, the last decade above the spacing of doubles below 1.
+// Distances from 0 and 1 go down to the decade of the spacing of doubles below 1, 1.1e-16.
 #define LEAST 1e-16
 
 // clang-format off
