@@ -48,6 +48,7 @@ struct cell {
   int n_images;
   uint64_t *single;        // the images of these iterations alone are kept
   int n_singles;
+  bool keeps_runs;         // each run's running averages are kept, not only moments over runs
   uint64_t *discs;         // the points of run 1 and their radii after these passes are kept
   int n_discs;
   const char *reference_integrator; // "path", "analytic", "richardson" or "none"

@@ -26,10 +26,10 @@ static bool same_images(const struct cell *a, const struct cell *b) {
 static bool same_paths(const struct cell *a, const struct cell *b) {
   return a->photons == b->photons && a->depth == b->depth && a->direct == b->direct &&
          a->left_out == b->left_out && a->seed == b->seed && a->runs == b->runs &&
-         a->until_se == b->until_se && a->iterations == b->iterations &&
-         a->footprint == b->footprint && a->hit_points == b->hit_points &&
-         a->integrator == b->integrator && strcmp(a->scene_path, b->scene_path) == 0 &&
-         same_probes(a, b) && same_images(a, b);
+         a->until_se == b->until_se && a->keeps_runs == b->keeps_runs &&
+         a->iterations == b->iterations && a->footprint == b->footprint &&
+         a->hit_points == b->hit_points && a->integrator == b->integrator &&
+         strcmp(a->scene_path, b->scene_path) == 0 && same_probes(a, b) && same_images(a, b);
 }
 
 // The group of each cell, numbered in the order of their first cells; returns how many there are.

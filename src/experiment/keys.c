@@ -171,6 +171,14 @@ bool key_read_pixel(struct reading *reading, const struct node *node, struct cel
   return true;
 }
 
+bool key_read_keep(struct reading *reading, const struct node *node, struct cell *cell) {
+  static const char *const names[] = {"moments", "runs"};
+  int choice;
+  if (!value_choice(reading, node, names, 2, &choice)) return false;
+  cell->keeps_runs = choice == 1;
+  return true;
+}
+
 // ---- lists that do not cross ----
 
 // A single value stands for a list of one.

@@ -27,6 +27,7 @@ bool key_read_quantity(struct reading *, const struct node *, struct cell *);
 bool key_read_images(struct reading *, const struct node *, struct cell *);
 bool key_read_single_images(struct reading *, const struct node *, struct cell *);
 bool key_read_discs(struct reading *, const struct node *, struct cell *);
+bool key_read_keep(struct reading *, const struct node *, struct cell *);
 bool key_read_until(struct reading *, const struct node *, struct cell *);
 bool key_read_reference(struct reading *, const struct node *, struct cell *);
 

@@ -1,79 +1,14 @@
 #include "log/results.h"
 
 #include "base/file.h"
+#include "log/csv.h"
+#include "log/runs.h"
 
 #include <assert.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
-
-// A reader over the fields of one line of a CSV file without quotes.
-struct csv {
-  const char *path;
-  char *at;
-  int line;
-  uint64_t sum; // of the whole file, XXH64
-  struct problem *problem;
-};
-
-static bool csv_bad(struct csv *csv, const char *what) {
-  struct place place = {csv->path, csv->line, 1};
-  return problem_at(csv->problem, place, "%s: the file is damaged, run the experiment again", what);
-}
-
-// Splits the next line into exactly n fields.
-static bool csv_row(struct csv *csv, int n, char **field) {
-  csv->line++;
-  for (int k = 0; k < n; k++) {
-    size_t length = strcspn(csv->at, ",\n");
-    if (csv->at[length] != (k + 1 < n ? ',' : '\n'))
-      return csv_bad(csv, "a row has not as many fields as columns");
-    field[k] = csv->at;
-    field[k][length] = 0;
-    csv->at += length + 1;
-  }
-  return true;
-}
-
-static bool csv_numbers(struct csv *csv, char *const *field, int n, double *const *value) {
-  for (int k = 0; k < n; k++) {
-    char *end;
-    *value[k] = strtod(field[k], &end);
-    if (end == field[k] || *end) return csv_bad(csv, "a number is missing");
-  }
-  return true;
-}
-
-// A whole number from `least` to `most`, both below 2^53.
-static bool csv_whole(struct csv *csv, char *field, uint64_t least, uint64_t most,
-                      uint64_t *value) {
-  double number = 0;
-  if (!csv_numbers(csv, &field, 1, (double *[]){&number})) return false;
-  if (!(number >= (double)least && number <= (double)most) || number != floor(number))
-    return csv_bad(csv, "a number is out of range");
-  *value = (uint64_t)number;
-  return true;
-}
-
-static bool csv_open(struct csv *csv, const char *path, const char *header, struct arena *arena,
-                     struct problem *problem) {
-  struct text text;
-  if (!file_read(path, arena, &text, problem)) return false;
-  *csv = (struct csv){path, text.data, 1, XXH64(text.data, (size_t)text.length, 0), problem};
-  size_t length = strcspn(text.data, "\n");
-  if (length != strlen(header) || memcmp(text.data, header, length) != 0)
-    return csv_bad(csv, "unexpected columns");
-  csv->at += length + (text.data[length] != 0);
-  return true;
-}
-
-// When every row made sense.
-static bool csv_close(const struct csv *csv, uint64_t sum) {
-  return csv->sum == sum ||
-         problem_set(csv->problem, "%s: was changed after the run, run the experiment again",
-                     csv->path);
-}
 
 static char *log_header(struct arena *arena) {
   char *header = arena_string(arena, "", 0);
@@ -231,10 +166,10 @@ static bool read_log(const char *path, uint64_t sum, struct arena *arena, struct
 struct manifest {
   const char *name, *quality;
   int n_cells;
-  uint64_t *scene_hash, *seed; // by cell; the command line may have set the seed
-  uint64_t *runs;              // by cell: those made
-  int *looks;                  // by cell
-  uint64_t log_sum, probes_sum;
+  uint64_t *scene_hash, *seed;            // by cell; the command line may have set the seed
+  uint64_t *runs;                         // by cell: those made
+  int *looks;                             // by cell
+  uint64_t log_sum, probes_sum, runs_sum; // runs_sum: where runs are kept
 };
 
 static bool read_hex(json_t *object, const char *key, uint64_t *value) {
@@ -268,6 +203,7 @@ static bool take_manifest(json_t *root, struct arena *arena, struct manifest *ma
     manifest->runs[c] = (uint64_t)json_integer_value(runs);
     manifest->looks[c] = (int)json_integer_value(looks);
   }
+  read_hex(root, "runs_hash", &manifest->runs_sum);
   return read_hex(root, "log_hash", &manifest->log_sum) &&
          read_hex(root, "probes_hash", &manifest->probes_sum);
 }
@@ -316,7 +252,10 @@ bool results_read(const char *directory, struct arena *arena, struct results *re
   return read_probes(arena_format(arena, "%s/probes.csv", directory), manifest.probes_sum, arena,
                      results, problem) &&
          read_log(arena_format(arena, "%s/log.csv", directory), manifest.log_sum, arena, results,
-                  problem);
+                  problem) &&
+         (!runs_are_kept(&results->experiment) ||
+          runs_read(arena_format(arena, "%s/runs.csv", directory), manifest.runs_sum, arena,
+                    results, problem));
 }
 
 bool results_name(const char *directory, struct arena *arena, const char **name,

@@ -32,6 +32,9 @@ struct series {
   struct moments *average;    // of the running average after N iterations
   struct moments *radius2;    // [n_iterations], scene units^2: of a local law's radius; NULL: none
   struct moments *richardson; // [n_iterations]: bias of iteration i by Richardson; NULL: none
+  // Of each run: [n_checkpoints][runs], the running averages of its values and, where there are any,
+  // of its biases by Richardson; NULL: only moments are kept.
+  double *run_average, *run_richardson;
 };
 
 struct results {

@@ -76,6 +76,21 @@ static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, cons
   keep_images(plan, i, frame, sum->film, value);
 }
 
+// What is kept of a run, from its vector.
+static void keep_run(const struct group_plan *plan, const double *value, double *kept) {
+  for (int c = 0; plan->kept_width && c < plan->group->n_cells; c++)
+    for (int p = 0; p < plan->n_probes; p++) {
+      const double *series = value + plan_series(plan, c, p);
+      double *out = kept + plan_kept(plan, c, p), sum = 0;
+      memcpy(out, series + plan->average_at, (size_t)plan->n_checkpoints * sizeof *out);
+      uint64_t i = 0;
+      for (int k = 0; plan->companion[c] && k < plan->n_checkpoints; k++) {
+        for (; i < plan->checkpoint[k]; i++) sum += series[plan->richardson_at + (long)i];
+        out[plan->n_checkpoints + k] = sum / (double)i;
+      }
+    }
+}
+
 static struct block_time clock_now(void) {
   struct timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -138,9 +153,16 @@ int block_runs(const struct group_plan *plan, uint64_t block) {
   return left < RUNS_PER_BLOCK ? (int)left : RUNS_PER_BLOCK;
 }
 
-void block_compute(const struct group_plan *plan, uint64_t block, struct moments *out,
-                   struct block_time *time, struct progress *progress, double run_work,
-                   struct arena scratch) {
+struct block block_new(const struct group_plan *plan, uint64_t block, struct arena *arena) {
+  return (struct block){
+      .time = arena_new(arena, struct block_time, plan->n_times),
+      .moments = arena_new(arena, struct moments, plan->width),
+      .kept = arena_new(arena, double, block_runs(plan, block) * plan->kept_width),
+  };
+}
+
+void block_compute(const struct group_plan *plan, uint64_t block, struct block *out,
+                   struct progress *progress, double run_work, struct arena scratch) {
   const struct measurement *measure = &plan->measure;
   long estimate = (long)measure->n_points * measure->features.n_channels;
   long film_size = plan->n_images ? plan->group->n_cells * estimate : 0;
@@ -151,18 +173,19 @@ void block_compute(const struct group_plan *plan, uint64_t block, struct moments
                        .value = arena_new(&scratch, double, plan->width),
                        .sum = {arena_new(&scratch, double, plan->group->n_cells * plan->n_probes),
                                arena_new(&scratch, double, film_size), film_size},
-                       .time = time,
+                       .time = out->time,
                        .progress = progress,
                        .run_work = run_work};
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
-  memset(time, 0, (size_t)plan->n_times * sizeof *time);
+  memset(out->time, 0, (size_t)plan->n_times * sizeof *out->time);
   for (int run = 1; run <= block_runs(plan, block); run++, begin = clock_now()) {
     run_once(&at, block * RUNS_PER_BLOCK + (uint64_t)run, begin);
     for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(at.value[k]);
     moments_tree_push(&tree, leaf, &scratch);
+    keep_run(plan, at.value, out->kept + (run - 1) * plan->kept_width);
   }
-  moments_tree_root(&tree, out);
+  moments_tree_root(&tree, out->moments);
 }
 
 // ---- files ----
@@ -173,11 +196,20 @@ struct block_header {
       check; // native: on a machine of the other byte order no match
 };
 
-static struct block_header header_of(const struct group_plan *plan, uint64_t block,
-                                     const struct moments *moments) {
-  size_t bytes = (size_t)plan->width * sizeof *moments;
-  return (struct block_header){"PLBLOCK", plan->fingerprint, block, (uint64_t)plan->width,
-                               XXH64(moments, bytes, plan->fingerprint)};
+static size_t kept_bytes(const struct group_plan *plan, uint64_t block) {
+  return (size_t)(block_runs(plan, block) * plan->kept_width) * sizeof(double);
+}
+
+static struct block_header header_of(const struct group_plan *plan, uint64_t number,
+                                     const struct block *block) {
+  XXH64_state_t *state = XXH64_createState();
+  XXH64_reset(state, plan->fingerprint);
+  XXH64_update(state, block->moments, (size_t)plan->width * sizeof *block->moments);
+  XXH64_update(state, block->kept, kept_bytes(plan, number));
+  struct block_header header = {"PLBLOCK", plan->fingerprint, number, (uint64_t)plan->width,
+                                XXH64_digest(state)};
+  XXH64_freeState(state);
+  return header;
 }
 
 const char *block_folder(const struct plan *plan, const char *directory, struct arena *arena) {
@@ -189,47 +221,41 @@ static char *block_path(const struct group_plan *plan, uint64_t block, const cha
   return arena_format(arena, "%s/group-%03d-block-%06" PRIu64, folder, plan->number, block);
 }
 
-// A whole and matching file.
-struct block_file {
-  struct block_time *time; // [n_times]
-  struct moments *moments; // [width]
-};
-
-static bool block_load(const struct group_plan *plan, uint64_t block, const char *folder,
-                       struct block_file *file, struct arena *arena) {
+bool block_read(const struct group_plan *plan, uint64_t number, const char *folder,
+                struct block *block, struct arena *arena) {
   struct text text;
   struct problem ignored = {0};
   struct block_header header;
-  size_t times = (size_t)plan->n_times * sizeof *file->time;
-  size_t bytes = (size_t)plan->width * sizeof *file->moments;
-  if (!file_read(block_path(plan, block, folder, arena), arena, &text, &ignored)) return false;
-  if ((size_t)text.length != sizeof header + times + bytes) return false;
-  file->time = arena_new(arena, struct block_time, plan->n_times);
-  file->moments = arena_new(arena, struct moments, plan->width);
+  size_t times = (size_t)plan->n_times * sizeof *block->time;
+  size_t bytes = (size_t)plan->width * sizeof *block->moments, kept = kept_bytes(plan, number);
+  if (!file_read(block_path(plan, number, folder, arena), arena, &text, &ignored)) return false;
+  if ((size_t)text.length != sizeof header + times + bytes + kept) return false;
+  *block = block_new(plan, number, arena);
   memcpy(&header, text.data, sizeof header);
-  memcpy(file->time, text.data + sizeof header, times);
-  memcpy(file->moments, text.data + sizeof header + times, bytes);
-  struct block_header expected = header_of(plan, block, file->moments);
+  memcpy(block->time, text.data + sizeof header, times);
+  memcpy(block->moments, text.data + sizeof header + times, bytes);
+  memcpy(block->kept, text.data + sizeof header + times + bytes, kept);
+  struct block_header expected = header_of(plan, number, block);
   return memcmp(&header, &expected, sizeof header) == 0;
 }
 
-const struct block_time *block_times(const struct group_plan *plan, uint64_t block,
+const struct block_time *block_times(const struct group_plan *plan, uint64_t number,
                                      const char *folder, struct arena *arena) {
-  struct block_file file;
-  return block_load(plan, block, folder, &file, arena) ? file.time : NULL;
+  struct block block;
+  return block_read(plan, number, folder, &block, arena) ? block.time : NULL;
 }
 
-void block_write(const struct group_plan *plan, uint64_t block, const char *folder,
-                 const struct moments *moments, const struct block_time *time,
-                 struct arena scratch) {
+void block_write(const struct group_plan *plan, uint64_t number, const char *folder,
+                 const struct block *block, struct arena scratch) {
   struct problem problem = {0};
   struct file_out out;
-  struct block_header header = header_of(plan, block, moments);
-  if (!file_begin(&out, block_path(plan, block, folder, &scratch), &problem))
+  struct block_header header = header_of(plan, number, block);
+  if (!file_begin(&out, block_path(plan, number, folder, &scratch), &problem))
     die("%s", problem.text);
   fwrite(&header, sizeof header, 1, out.stream);
-  fwrite(time, sizeof *time, (size_t)plan->n_times, out.stream);
-  fwrite(moments, sizeof *moments, (size_t)plan->width, out.stream);
+  fwrite(block->time, sizeof *block->time, (size_t)plan->n_times, out.stream);
+  fwrite(block->moments, sizeof *block->moments, (size_t)plan->width, out.stream);
+  fwrite(block->kept, 1, kept_bytes(plan, number), out.stream);
   if (!file_commit(&out, &problem)) die("%s", problem.text);
 }
 
@@ -243,16 +269,22 @@ bool block_remove_all(const struct plan *plan, const char *directory, struct are
   return rmdir(arena_format(&scratch, "%s/blocks", directory)) == 0;
 }
 
+struct block block_must_read(const struct group_plan *plan, uint64_t number, const char *folder,
+                             struct arena *arena) {
+  struct block block;
+  if (!block_read(plan, number, folder, &block, arena))
+    die("%s: block %" PRIu64 " of group %d has gone while the experiment ran", folder, number,
+        plan->number);
+  return block;
+}
+
 void block_merge(const struct group_plan *plan, const char *folder, struct moments *out,
                  struct arena scratch) {
   struct moments_tree tree = moments_tree_new(plan->width, &scratch);
   struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
   for (uint64_t block = 0; block < plan->n_blocks; block++) {
     struct arena own = scratch; // given back after each block
-    struct block_file file;
-    if (!block_load(plan, block, folder, &file, &own))
-      die("%s: block %" PRIu64 " of group %d has gone while the experiment ran", folder, block,
-          plan->number);
+    struct block file = block_must_read(plan, block, folder, &own);
     memcpy(leaf, file.moments, (size_t)plan->width * sizeof *leaf);
     moments_tree_push(&tree, leaf, &scratch);
   }

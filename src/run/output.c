@@ -4,9 +4,11 @@
 #include "base/version.h"
 #include "log/cell_json.h"
 #include "log/log.h"
+#include "log/runs.h"
 #include "run/block.h"
 #include "run/discs.h"
 #include "run/picture.h"
+#include "run/runs.h"
 #include "run/series.h"
 
 #include <errno.h>
@@ -54,7 +56,9 @@ bool output_check_names(const struct plan *plan, struct problem *problem) {
 bool output_is_complete(const struct plan *plan, const char *directory, struct arena scratch) {
   return strcmp(manifest_fingerprint(directory, &scratch), fingerprint_text(plan, &scratch)) == 0 &&
          file_exists(path_of(directory, "log.csv", &scratch)) &&
-         file_exists(path_of(directory, "probes.csv", &scratch));
+         file_exists(path_of(directory, "probes.csv", &scratch)) &&
+         (!runs_are_kept(plan->experiment) ||
+          file_exists(path_of(directory, "runs.csv", &scratch)));
 }
 
 bool output_set_aside(const struct plan *plan, const char *directory, struct arena scratch,
@@ -247,7 +251,9 @@ static bool write_manifest(const struct outputs *outputs, struct arena scratch,
   json_object_set_new(root, "flags", json_string(photonlab_flags));
   json_object_set_new(root, "cpu", json_string(cpu_name(&scratch)));
   if (!set_hash(root, "log_hash", outputs->directory, "log.csv", scratch, problem) ||
-      !set_hash(root, "probes_hash", outputs->directory, "probes.csv", scratch, problem)) {
+      !set_hash(root, "probes_hash", outputs->directory, "probes.csv", scratch, problem) ||
+      (runs_are_kept(plan->experiment) &&
+       !set_hash(root, "runs_hash", outputs->directory, "runs.csv", scratch, problem))) {
     json_decref(root);
     json_decref(cells);
     return false;
@@ -268,8 +274,9 @@ static bool write_manifest(const struct outputs *outputs, struct arena scratch,
 
 bool output_write(const struct outputs *outputs, struct arena scratch, struct problem *problem) {
   if (!write_experiment(outputs, scratch, problem) || !write_probes(outputs, scratch, problem) ||
-      !write_logs(outputs, scratch, problem) || !write_timing(outputs, scratch, problem) ||
-      !write_manifest(outputs, scratch, problem))
+      !write_logs(outputs, scratch, problem) ||
+      !runs_collect(outputs->plan, outputs->directory, scratch, problem) ||
+      !write_timing(outputs, scratch, problem) || !write_manifest(outputs, scratch, problem))
     return false;
   if (!block_remove_all(outputs->plan, outputs->directory, scratch) &&
       !outputs->plan->options.quiet)

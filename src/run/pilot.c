@@ -12,6 +12,7 @@ static void make_pilot(struct cell *cell) {
   cell->runs = cell->runs < RUNS_PER_BLOCK ? cell->runs : RUNS_PER_BLOCK;
   cell->n_images = cell->n_singles = cell->n_discs = 0;
   cell->until_se = 0;
+  cell->keeps_runs = false;
 }
 
 struct experiment pilot_of(const struct experiment *experiment, struct arena *arena) {
@@ -25,12 +26,10 @@ struct experiment pilot_of(const struct experiment *experiment, struct arena *ar
 }
 
 struct moments *pilot_run(const struct group_plan *group, struct arena *arena) {
-  struct moments *moments = arena_new(arena, struct moments, group->width);
-  struct arena scratch = *arena;
-  struct block_time *time = arena_new(&scratch, struct block_time, group->n_times);
+  struct block block = block_new(group, 0, arena);
   struct progress silent = {.quiet = true};
-  block_compute(group, 0, moments, time, &silent, 0, scratch);
-  return moments;
+  block_compute(group, 0, &block, &silent, 0, *arena);
+  return block.moments;
 }
 
 // The bias of iteration 1 and its standard error, by least squares: an iteration's bias is as rho,

@@ -220,6 +220,11 @@ static void plan_series_layout(struct group_plan *plan) {
   }
 }
 
+long plan_kept(const struct group_plan *plan, int cell, int probe) {
+  int series = plan->richardson_at ? 2 : 1;
+  return ((long)cell * plan->n_probes + probe) * series * plan->n_checkpoints;
+}
+
 static void plan_layout(struct group_plan *plan, struct arena *arena) {
   const struct measurement *measure = &plan->measure;
   const struct cell *cell = plan->cell;
@@ -228,6 +233,7 @@ static void plan_layout(struct group_plan *plan, struct arena *arena) {
   long image = (long)measure->n_points * measure->features.n_channels;
   plan->width =
       plan->group->n_cells * (plan->n_probes * plan->series_width + plan->n_images * image);
+  if (cell->keeps_runs) plan->kept_width = plan_kept(plan, plan->group->n_cells, 0);
   bool last = cell->n_images && cell->image[cell->n_images - 1] == cell->iterations;
   plan->n_times = cell->n_images + !last;
 }

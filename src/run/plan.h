@@ -30,7 +30,9 @@ struct loaded_scene {
 // `iterations` luminances, the running averages at the checkpoints and, where there are any,
 // `iterations` squared radii of local statistics and `iterations` biases by Richardson; then for
 // each cell, for each kept image, n_points * n_channels values: running averages, then those of
-// iterations alone. The measurement's estimators are the cells, then their companions.
+// iterations alone. Where runs are kept, kept_width of its numbers are: for each cell, for each probe
+// the running averages at the checkpoints, then, where there are biases by Richardson, theirs. The
+// measurement's estimators are the cells, then their companions.
 struct group_plan {
   int number;
   const struct group *group;
@@ -49,6 +51,7 @@ struct group_plan {
   long richardson_at; // biases; 0: none
   int n_times;        // at how many iterations the time is taken: of images, and the last
   long series_width, width;
+  long kept_width; // numbers kept of each run; 0: none
   uint64_t runs; // that are made: all of the cell, or so many until now (look.h)
   int looks;     // at what they say, the last included
   bool enough;   // the last look said so
@@ -82,6 +85,7 @@ bool plan_estimator(const struct cell *, const struct scene *, struct estimator 
 // Offsets into the vector.
 long plan_series(const struct group_plan *, int cell, int probe); // cell: in the group
 long plan_image(const struct group_plan *, int cell, int image);
+long plan_kept(const struct group_plan *, int cell, int probe); // into what is kept of a run
 
 // The iteration after which time t of n_times is taken.
 uint64_t plan_time_at(const struct group_plan *, int t);

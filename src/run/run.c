@@ -81,11 +81,10 @@ static struct units units_left(const struct plan *plan, const char *folder, stru
 
 static void compute(const struct group_plan *plan, const struct unit *unit, const char *folder,
                     struct progress *progress, struct arena scratch) {
-  struct moments *moments = arena_new(&scratch, struct moments, plan->width);
-  struct block_time *time = arena_new(&scratch, struct block_time, plan->n_times);
+  struct block block = block_new(plan, unit->block, &scratch);
   double run_work = unit->work / block_runs(plan, unit->block);
-  block_compute(plan, unit->block, moments, time, progress, run_work, scratch);
-  block_write(plan, unit->block, folder, moments, time, scratch);
+  block_compute(plan, unit->block, &block, progress, run_work, scratch);
+  block_write(plan, unit->block, folder, &block, scratch);
 }
 
 // All units on all threads. Each writes its own file, so there is nothing to share but the queue.

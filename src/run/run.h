@@ -12,8 +12,8 @@ enum run_outcome { RUN_FAILED, RUN_DONE, RUN_INTERRUPTED };
 
 // Runs the experiment into `directory` (made if needed), going on where an interrupted run of the
 // same experiment stopped. RUN_FAILED: problem set, nothing half-written. Writes manifest.json,
-// log.csv, probes.csv, timing.csv, images/*.exr, discs/*.csv and a copy of the experiment;
-// references are cached in `references` beside the directory.
+// log.csv, runs.csv (key keep), probes.csv, timing.csv, images/*.exr, discs/*.csv and a copy of the
+// experiment; references are cached in `references` beside the directory.
 enum run_outcome run_experiment(const struct experiment *, const char *directory,
                                 struct run_options, struct arena *, struct problem *);
 

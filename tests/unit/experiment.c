@@ -134,6 +134,7 @@ static void a_minimal_file_takes_every_default_of_the_table(void **state) {
   assert_true(cell->photons == 65536 && cell->iterations == 1000 && cell->runs == 32);
   assert_true(cell->seed == rng_hash_name("mine"));
   assert_true(!cell->probe && !cell->n_probes && !cell->n_images && !cell->footprint);
+  assert_false(cell->keeps_runs);
   assert_true(cell->direct == DIRECT_PHOTONS && cell->depth == 64);
   assert_int_equal(cell->quantities, QUANTITY_VARIANCE | QUANTITY_BIAS);
   assert_string_equal(cell->reference_integrator, "analytic");
@@ -146,7 +147,7 @@ static void every_key_reaches_its_field(void **state) {
       read_text("integrator: path\nlaw: knaus-zwicker\nkernel: box\nalpha: 2.385e-1\nphotons: 7\n"
                 "iterations: 11\nruns: 13\nseed: alpha\ndirect: nee\ndepth: 3\npixel: footprint\n"
                 "probes: [[1, 2], [30, 4]]\nquantity: [variance]\nimages: [5, 11]\n"
-                "single-images: [3, 7]\n"
+                "single-images: [3, 7]\nkeep: runs\n"
                 "reference: {se: 1/8, integrator: path}\n")
           .cell;
   assert_string_equal(cell->integrator->name, "path");
@@ -159,6 +160,7 @@ static void every_key_reaches_its_field(void **state) {
   assert_int_equal(cell->quantities, QUANTITY_VARIANCE);
   assert_true(cell->n_images == 2 && cell->image[0] == 5 && cell->image[1] == 11);
   assert_true(cell->n_singles == 2 && cell->single[0] == 3 && cell->single[1] == 7);
+  assert_true(cell->keeps_runs);
   assert_string_equal(cell->reference_integrator, "path");
   assert_true(cell->reference_se == 0.125);
   assert_string_equal(read_text("reference: none\n").cell->reference_integrator, "none");
@@ -404,7 +406,7 @@ static void every_key_that_changes_the_paths_splits_the_group(void **state) {
       "iterations: 7",         "probes: [[3, 4]]", "probes: [[1, 2], [3, 4]]",
       "until: rate_se <= 0.1", "images: [3]",      "single-images: 3",
       "pixel: footprint",      "integrator: path", "view: direct",
-      "hit-points: 3",
+      "hit-points: 3",         "keep: runs",
   };
   static const char *const shared[] = {"quantity: bias", "reference: none", "alpha: 0.1",
                                        "radius: 3"};
@@ -444,7 +446,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 27);
+  assert_int_equal(n_experiment_keys, 28);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);

@@ -18,16 +18,15 @@ static void what_is_read_back_is_what_was_measured(void **state) {
   struct plan plan;
   struct problem problem = {0};
   assert_true(plan_make(&experiment, quiet, &arena, &plan, &problem));
-  struct moments *expected = arena_new(&arena, struct moments, plan.group[0].width);
+  struct block block = block_new(&plan.group[0], 0, &arena);
   struct progress silent = {.quiet = true};
-  struct block_time ignored;
-  block_compute(&plan.group[0], 0, expected, &ignored, &silent, 0, arena);
+  block_compute(&plan.group[0], 0, &block, &silent, 0, arena);
   run_into(&experiment, path_in("back"));
   struct results results = results_of(path_in("back"));
   assert_int_equal(results.n_series, 2);
   for (int e = 0; e < 2; e++) {
     const struct series *series = &results.series[e];
-    const struct moments *at = expected + plan_series(&plan.group[0], e, 0);
+    const struct moments *at = block.moments + plan_series(&plan.group[0], e, 0);
     assert_int_equal(series->cell, e);
     assert_int_equal(series->n_checkpoints, 4);
     assert_memory_equal(series->iteration, at, 4 * sizeof *at);

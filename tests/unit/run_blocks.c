@@ -9,12 +9,11 @@ static const char *begin_blocks(const struct plan *plan, const char *directory) 
   const char *blocks = block_folder(plan, directory, &arena);
   struct problem problem = {0};
   assert_true(file_make_directory(blocks, &problem));
-  struct moments *moments = arena_new(&arena, struct moments, plan->group[0].width);
+  struct block block = block_new(&plan->group[0], 1, &arena);
   struct progress silent = {.quiet = true};
-  struct block_time time;
-  block_compute(&plan->group[0], 1, moments, &time, &silent, 0, arena);
-  time = (struct block_time){1234.5, 0.5, 2385};
-  block_write(&plan->group[0], 1, blocks, moments, &time, arena);
+  block_compute(&plan->group[0], 1, &block, &silent, 0, arena);
+  block.time[0] = (struct block_time){1234.5, 0.5, 2385};
+  block_write(&plan->group[0], 1, blocks, &block, arena);
   return blocks;
 }
 
