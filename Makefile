@@ -125,6 +125,7 @@ $(gen)/slots.c: FORCE | $(gen)
 	$(call slot_table,material,src/scene/material); \
 	$(call slot_table,texture,src/scene/texture); \
 	$(call slot_table,camera,src/scene/camera); \
+	$(call slot_table,medium,src/scene/medium); \
 	$(call slot_table,integrator,src/integrator); \
 	echo "$$integrator_find"; } >$@.new; $(keep)
 

@@ -145,8 +145,8 @@ static void emit(struct local *local, uint64_t i, double r) {
                                .first_vertex = measure->nee ? 1 : 0,
                                .first = t * batches / n * WALK_BATCH};
     begin(map, worker->walk, RNG_PHOTONS, i);
-    photons_trace(worker->walk, &pass, filter, n == 1 ? &map->photons : &worker->photons,
-                  worker->arena);
+    struct photon_sinks sinks = {.surface = {n == 1 ? &map->photons : &worker->photons, filter}};
+    photons_trace(worker->walk, &pass, &sinks, worker->arena);
   }
   if (n == 1) return;
   map->photons.count = 0;

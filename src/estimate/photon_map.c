@@ -49,7 +49,8 @@ void photon_map_emit(struct photon_map *map, uint64_t i, double r) {
   const struct photon_filter *filter = map->any_radius ? NULL : photon_map_filter(map, r);
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
   walk_begin(map->walk, measure->seed, map->run, i);
-  photons_trace(map->walk, &pass, filter, &map->photons, map->arena);
+  struct photon_sinks sinks = {.surface = {&map->photons, filter}};
+  photons_trace(map->walk, &pass, &sinks, map->arena);
   if (map->any_radius)
     knn_build(&map->tree, map->photons.position, map->photons.count, map->arena);
   else
@@ -99,6 +100,7 @@ static void connect_points(struct photon_map *map, int first, int n) {
   const struct camera *camera = &walk->scene->camera;
   uint64_t pixels = (uint64_t)camera->width * (uint64_t)camera->height;
   walk->n = n;
+  walk->vertex = 0;
   for (int j = 0; j < n; j++) {
     uint64_t set = (uint64_t)((first + j) / (measure->n_points / map->sets));
     walk->path[j] = eye_path(camera, measure->pixel[first + j]) + set * pixels;
@@ -112,6 +114,8 @@ static void connect_points(struct photon_map *map, int first, int n) {
     struct connection connection = {.bsdf = &point->bsdf,
                                     .p = point->p,
                                     .primitive = point->primitive,
+                                    .medium = point->medium,
+                                    .path = walk->path[j],
                                     .wo = point->wo,
                                     .owner = first + j};
     memcpy(connection.weight, point->weight, sizeof connection.weight);

@@ -23,9 +23,9 @@ static void draw(struct radii *radii) {
   struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
   walk->key = rng_key(measure->seed, 0, RNG_RADII);
   walk_begin(walk, measure->seed, 0, 0);
-  photons_trace(walk, &pass, NULL, &radii->photons, radii->arena);
-  knn_build(&radii->tree, radii->photons.position, radii->photons.count,
-            radii->arena);
+  struct photon_sinks sinks = {.surface = {&radii->photons, NULL}};
+  photons_trace(walk, &pass, &sinks, radii->arena);
+  knn_build(&radii->tree, radii->photons.position, radii->photons.count, radii->arena);
   radii->drawn = true;
 }
 
@@ -86,6 +86,5 @@ const double *radii_scale(struct radii *radii, int point, const double *r) {
 }
 
 int64_t radii_bytes(const struct radii *radii) {
-  return photons_bytes(&radii->photons) +
-         radii->tree.count * (int64_t)sizeof(struct knn_item);
+  return photons_bytes(&radii->photons) + radii->tree.count * (int64_t)sizeof(struct knn_item);
 }

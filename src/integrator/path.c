@@ -53,7 +53,7 @@ static void add_background(const struct path *state, double *frame) {
   const struct walk *walk = state->walk;
   const struct scene *scene = walk->scene;
   for (int j = 0; j < walk->n; j++) {
-    if (walk->hit[j].primitive != PRIMITIVE_NONE) continue;
+    if (!walk_escaped(walk, j)) continue;
     for (uint32_t k = 0; k < scene->n_infinite; k++) {
       const struct light *light = &scene->light[scene->infinite[k]];
       struct vec d = walk->ray[j].d;
@@ -66,22 +66,56 @@ static void add_background(const struct path *state, double *frame) {
   }
 }
 
-static void connect(const struct path *state, int j, const struct surface *at,
-                    const struct bsdf *bsdf) {
+// To a light, from p on a primitive or (PRIMITIVE_NONE) in a medium, with weight[c] times what is
+// scattered.
+static void connect(const struct path *state, int j, struct vec p, uint32_t primitive,
+                    const struct bsdf *bsdf, const double weight[3]) {
   struct walk *walk = state->walk;
   if (light_path_after(walk->kind[j], false) & state->measure->left_out) return;
   struct connection connection = {.bsdf = bsdf,
-                                  .p = at->p,
-                                  .primitive = at->primitive,
+                                  .p = p,
+                                  .primitive = primitive,
+                                  .medium = walk->medium ? walk->medium[j] : MEDIUM_NONE,
+                                  .path = walk->path[j],
                                   .wo = vec_scale(walk->ray[j].d, -1),
                                   .owner = walk->owner[j]};
   if (bsdf_delta_probability(bsdf, connection.wo, TRANSPORT_RADIANCE) >= 1) return;
-  for (int c = 0; c < walk->n_channels; c++) connection.weight[c] = walk->throughput[c][j];
+  memcpy(connection.weight, weight, sizeof connection.weight);
   double u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
   connect_add(walk, &connection, walk->u[2][0][j], u, true);
 }
 
-// At every hit: add what it emits, connect it to a light, scatter.
+// At a surface. True: the path goes on.
+static bool meet_surface(const struct path *state, int j, bool last, double *frame) {
+  struct walk *walk = state->walk;
+  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+  add_emission(state, j, &surface, frame);
+  if (last) return false;
+  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  if (!bsdf.type) return false;
+  double weight[3];
+  for (int c = 0; c < walk->n_channels; c++) weight[c] = walk->throughput[c][j];
+  connect(state, j, surface.p, surface.primitive, &bsdf, weight);
+  return walk_scatter(walk, j, &surface, &bsdf);
+}
+
+// The same in a medium, whose emission next-event estimation does not look for.
+static bool meet_medium(const struct path *state, int j, bool last, double *frame) {
+  struct walk *walk = state->walk;
+  const struct collision *collision = &walk->collision[j];
+  int n = walk->n_channels;
+  double weight[3];
+  if (!(walk->kind[j] & state->measure->left_out))
+    for (int c = 0; c < n; c++)
+      frame[walk->owner[j] * n + c] += collision->weight[c] * collision->at.emission[c];
+  if (last) return false;
+  struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
+  for (int c = 0; c < n; c++) weight[c] = collision->weight[c] * collision->at.sigma_s[c];
+  connect(state, j, walk_collision_point(walk, j), PRIMITIVE_NONE, &phase, weight);
+  return walk_scatter_in_medium(walk, j);
+}
+
+// At every vertex: add what it emits, connect it to a light, scatter.
 static void meet(const struct path *state, double *frame) {
   struct walk *walk = state->walk;
   bool last = walk->vertex >= state->measure->depth;
@@ -93,14 +127,9 @@ static void meet(const struct path *state, double *frame) {
   }
   connect_begin(walk);
   for (int j = 0; j < walk->n; j++) {
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    add_emission(state, j, &surface, frame);
-    if (last) continue;
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
-    if (!bsdf.type) continue;
-    connect(state, j, &surface, &bsdf);
-    if (walk_scatter(walk, j, &surface, &bsdf) &&
-        !light_path_ends(walk->kind[j], state->measure->left_out))
+    bool on = walk_collided(walk, j) ? meet_medium(state, j, last, frame)
+                                     : meet_surface(state, j, last, frame);
+    if (on && !light_path_ends(walk->kind[j], state->measure->left_out))
       walk_move(walk, alive++, j);
   }
   connect_finish(walk, frame);

@@ -1,9 +1,9 @@
 // Scattering at one point of a surface: a material with its textures looked up.
-// A bsdf_type works in the shading frame: z along the shading normal, x along dpdu, directions of unit
-// length away from the surface. `wo` is where the path came from. As in pbrt-v4 it is the signs of
-// z, not the geometric normal, that tell reflection from transmission.
-// Radiance: wo is towards the eye, and transmission into eta divides by eta^2. Importance: wo is
-// towards the light (photons); nothing is divided (Veach 1997, ch. 5).
+// A bsdf_type works in the shading frame: z along the shading normal, x along dpdu, directions of
+// unit length away from the surface. `wo` is where the path came from. As in pbrt-v4 it is the
+// signs of z, not the geometric normal, that tell reflection from transmission. Radiance: wo is
+// towards the eye, and transmission into eta divides by eta^2. Importance: wo is towards the light
+// (photons); nothing is divided (Veach 1997, ch. 5).
 #ifndef SCENE_BSDF_H
 #define SCENE_BSDF_H
 
@@ -20,8 +20,9 @@ struct bsdf {
   const void *data;             // the material's own
   struct vec s, t, n;           // shading frame, right-handed, world space
   struct vec ng;
-  bool bent; // n is not ng
-  double u;  // in [0, 1), of this vertex alone: what a random material draws from
+  bool bent;              // n is not ng
+  bool volume;            // a phase function: it has no normal
+  double u;               // in [0, 1), of this vertex alone: what a random material draws from
   double x[BSDF_NUMBERS]; // the type's own: reflectance, eta, roughness, ...
 };
 
@@ -54,25 +55,35 @@ static inline struct vec bsdf_to_world(const struct bsdf *b, struct vec w) {
   return vec_along(vec_along(vec_scale(b->s, w.x), b->t, w.y), b->n, w.z);
 }
 
+// A direction along a surface has no side of it; a medium has no sides.
+static inline bool bsdf_is_met(const struct bsdf *b, struct vec local) {
+  return b->type && (local.z != 0 || b->volume);
+}
+
 // World space from here on.
 
 static inline void bsdf_value(const struct bsdf *b, struct vec wo, struct vec wi,
                               enum transport transport, double f[3]) {
   struct vec o = bsdf_to_local(b, wo), i = bsdf_to_local(b, wi);
   f[0] = f[1] = f[2] = 0;
-  if (b->type && o.z != 0 && i.z != 0) b->type->value(b, o, i, transport, f);
+  if (bsdf_is_met(b, o) && bsdf_is_met(b, i)) b->type->value(b, o, i, transport, f);
 }
 
 static inline double bsdf_pdf(const struct bsdf *b, struct vec wo, struct vec wi,
                               enum transport transport) {
   struct vec o = bsdf_to_local(b, wo), i = bsdf_to_local(b, wi);
-  return b->type && o.z != 0 && i.z != 0 ? b->type->pdf(b, o, i, transport) : 0;
+  return bsdf_is_met(b, o) && bsdf_is_met(b, i) ? b->type->pdf(b, o, i, transport) : 0;
 }
 
 static inline double bsdf_delta_probability(const struct bsdf *b, struct vec wo,
                                             enum transport transport) {
   if (!b->type->delta_probability) return 0;
   return b->type->delta_probability(b, bsdf_to_local(b, wo), transport);
+}
+
+// What the radiance from wi is weighed with.
+static inline double bsdf_cosine(const struct bsdf *b, struct vec wi) {
+  return b->volume ? 1 : fabs(vec_dot(wi, b->n));
 }
 
 // A photon that arrives from wi stands for a radiance over |wi.ng|, the measurement weighs it with
@@ -86,7 +97,7 @@ static inline double bsdf_photon_factor(const struct bsdf *b, struct vec wi) {
 static inline bool bsdf_sample(const struct bsdf *b, struct vec wo, const double u[3],
                                enum transport transport, struct bsdf_sample *sample) {
   struct vec o = bsdf_to_local(b, wo);
-  if (!b->type || o.z == 0 || !b->type->sample(b, o, u, transport, sample)) return false;
+  if (!bsdf_is_met(b, o) || !b->type->sample(b, o, u, transport, sample)) return false;
   sample->wi = bsdf_to_world(b, sample->wi);
   if (b->bent && transport == TRANSPORT_IMPORTANCE) {
     double factor = bsdf_photon_factor(b, wo) / bsdf_photon_factor(b, sample->wi);

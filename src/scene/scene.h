@@ -11,6 +11,7 @@
 #include "pbrt/params.h"
 #include "scene/animation.h"
 #include "scene/bsdf.h"
+#include "scene/medium.h"
 #include "scene/ray.h"
 #include "scene/texture.h"
 #include "scene/transform.h"
@@ -54,6 +55,8 @@ struct shape {
   bool flip;                  // geometric normal reversed (ReverseOrientation xor mirrored matrix)
   bool detailed;              // somebody wants ns, dpdu, uv
   bool see_through;           // a ray may pass: alpha, or a material that is an interface
+  uint32_t inside, outside;   // rows of scene.medium or MEDIUM_NONE, behind and before ng; where they
+                              // differ, what crosses the shape changes its medium
 };
 
 // Sphere, disk and cylinder, partial sweeps as in pbrt-v4. The world transform has no limits but
@@ -134,6 +137,7 @@ struct light {
   const void *data;
   double power[3];     // W per channel, all of what it emits
   double probability;  // of being chosen, in proportion to the mean over channels of power; sums to 1
+  uint32_t medium;     // where its photons start; of area lights the shape's
 };
 
 struct emission {
@@ -271,12 +275,14 @@ struct scene {
   uint32_t *shape_of;      // by primitive
   struct material *material;
   struct light *light;
+  struct medium *medium;
   double *light_cdf;       // [n_lights + 1], cumulative `probability`
   uint32_t *infinite;      // rows of light with a background
   struct motion *motion;
   double motion_time[2];   // TransformTimes
   uint32_t n_positions, n_normals, n_uvs, n_tangents, n_triangles, n_patches, n_quadrics, n_shapes,
-      n_primitives, n_materials, n_lights, n_infinite, n_motions;
+      n_primitives, n_materials, n_lights, n_infinite, n_motions, n_media;
+  uint32_t camera_medium; // where eye paths start: row of `medium` or MEDIUM_NONE
 
   struct box bounds;       // of all primitives, at all times
   struct inventory inventory;
@@ -301,6 +307,14 @@ static inline const struct material *scene_material(const struct scene *scene,
   return &scene->material[scene->shape[surface->shape].material];
 }
 
+// The medium of a ray that leaves the surface along w, if it arrived through `medium`.
+static inline uint32_t surface_medium(const struct scene *scene, const struct surface *surface,
+                                      struct vec w, uint32_t medium) {
+  const struct shape *shape = &scene->shape[surface->shape];
+  if (shape->inside == shape->outside) return medium;
+  return vec_dot(w, surface->ng) > 0 ? shape->outside : shape->inside;
+}
+
 // The scattering at a surface; u: a uniform random number of this vertex (for MATERIAL_RANDOM).
 // type is NULL where nothing is scattered.
 struct bsdf surface_bsdf(const struct scene *, const struct surface *, double u);
@@ -318,6 +332,7 @@ struct features {
   bool see_through;      // some shape lets rays pass
   bool motion;
   bool background;       // some light is infinite
+  bool media;            // some ray may be in a medium
 };
 struct features scene_features(const struct scene *);
 

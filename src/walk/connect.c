@@ -1,5 +1,6 @@
 #include "walk/connect.h"
 
+#include "walk/flight.h"
 #include "walk/light.h"
 
 // The light's share in the balance heuristic.
@@ -17,7 +18,7 @@ static bool sample_light(const struct walk *walk, const struct connection *from,
   const struct scene *scene = walk->scene;
   const struct light *light = light_choose(scene, u_light);
   if (!light->type->sample(scene, light, from->p, u, sample)) return false;
-  double f[3], cosine = fabs(vec_dot(sample->wi, from->bsdf->n));
+  double f[3], cosine = bsdf_cosine(from->bsdf, sample->wi);
   bsdf_value(from->bsdf, from->wo, sample->wi, TRANSPORT_RADIANCE, f);
   double weight = mis && sample->pdf_solid_angle > 0 ? light_share(from, light, sample) : 1;
   bool any = false;
@@ -47,6 +48,18 @@ void connect_ray(struct walk *walk, const struct ray *ray, double distance, cons
   add_ray(walk, ray, distance, PRIMITIVE_NONE, value, owner);
 }
 
+// The medium in which the last shadow ray begins.
+static void begin_shadow(struct walk *walk, const struct connection *from, struct vec wi) {
+  struct shadow *shadow = &walk->shadow;
+  int k = shadow->n - 1;
+  shadow->path[k] = from->path;
+  shadow->flights[k] = 0;
+  shadow->medium[k] = from->medium;
+  if (from->primitive == PRIMITIVE_NONE) return;
+  struct surface surface = {.ng = from->bsdf->ng, .shape = walk->scene->shape_of[from->primitive]};
+  shadow->medium[k] = surface_medium(walk->scene, &surface, wi, from->medium);
+}
+
 void connect_add(struct walk *walk, const struct connection *from, double u_light,
                  const double u[2], bool mis) {
   struct light_sample sample;
@@ -56,6 +69,7 @@ void connect_add(struct walk *walk, const struct connection *from, double u_ligh
   // Rounding may put the emitter a little before or behind the distance: search to the end.
   struct ray ray = {from->p, sample.wi, INFINITY, from->primitive};
   add_ray(walk, &ray, sample.distance, sample.primitive, value, from->owner);
+  if (walk->medium) begin_shadow(walk, from, sample.wi);
 }
 
 // A shadow ray sees the sampled point iff nothing is hit before it. The emitter itself ends the
@@ -80,6 +94,21 @@ static void move_shadow(struct walk *walk, int to, int from) {
   shadow->emitter[to] = shadow->emitter[from];
   shadow->owner[to] = shadow->owner[from];
   for (int c = 0; c < walk->n_channels; c++) shadow->value[c][to] = shadow->value[c][from];
+  if (!walk->medium) return;
+  shadow->medium[to] = shadow->medium[from];
+  shadow->flights[to] = shadow->flights[from];
+  shadow->path[to] = shadow->path[from];
+}
+
+// What the medium leaves of shadow ray k after `distance`.
+static void attenuate(struct walk *walk, int k, double distance) {
+  struct shadow *shadow = &walk->shadow;
+  if (!walk->medium || shadow->medium[k] == MEDIUM_NONE) return;
+  double value[3];
+  for (int c = 0; c < walk->n_channels; c++) value[c] = shadow->value[c][k];
+  flight_shadow(walk, shadow->medium[k], &shadow->ray[k], distance, shadow->path[k], walk->vertex,
+                &shadow->flights[k], value);
+  for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] = value[c];
 }
 
 // A see-through surface before the light: attenuates shadow ray k and sends it on. False: opaque
@@ -91,6 +120,9 @@ static bool pass(struct walk *walk, int k) {
   double passed = 1 - surface_opacity(walk->scene, &surface);
   if (!(passed > 0)) return false;
   for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] *= passed;
+  attenuate(walk, k, shadow->hit[k].t);
+  if (walk->medium && scene_material(walk->scene, &surface)->type->passed)
+    shadow->medium[k] = surface_medium(walk->scene, &surface, shadow->ray[k].d, shadow->medium[k]);
   shadow->distance[k] -= shadow->hit[k].t;
   shadow->ray[k] = walk_ray_beyond(&surface, &shadow->ray[k]);
   return true;
@@ -104,6 +136,7 @@ void connect_finish(struct walk *walk, double *sum) {
     for (int k = 0; k < shadow->n; k++) {
       if (sees(walk->scene, &shadow->ray[k], shadow->hit[k], shadow->distance[k],
                shadow->emitter[k])) {
+        attenuate(walk, k, shadow->distance[k]);
         for (int c = 0; c < walk->n_channels; c++)
           sum[shadow->owner[k] * walk->n_channels + c] += shadow->value[c][k];
       } else if (walk->features.see_through && pass(walk, k)) {

@@ -9,7 +9,9 @@
 struct connection {
   const struct bsdf *bsdf;
   struct vec p;
-  uint32_t primitive; // p is on it
+  uint32_t primitive; // p is on it; PRIMITIVE_NONE: in a medium
+  uint32_t medium;    // that the path arrived through; looked at only where there are media
+  uint64_t path;      // whose random numbers its shadow ray uses there
   struct vec wo;      // towards the eye, unit length
   double weight[3];   // what the radiance scattered towards wo is multiplied with
   int owner;

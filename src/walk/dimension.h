@@ -27,10 +27,15 @@ static inline uint32_t pair_of_vertex(int vertex, enum vertex_pair pair) {
   return PAIR_VERTEX + PAIRS_PER_VERTEX * (uint32_t)vertex + (uint32_t)pair;
 }
 
-// Whether a path is stopped by the surfaces it may see through: number `crossing` since `vertex`.
-// Above all others; a path of 2^16 vertices or crossings would meet its own numbers again.
-static inline uint32_t pair_of_crossing(int vertex, int crossing) {
-  return 0x80000000u | ((uint32_t)vertex & 0x7fffu) << 16 | ((uint32_t)crossing & 0xffffu);
+// Above all others: number `k` since `vertex` of what happens between vertices. A path of 2^14
+// vertices, or of 2^16 such events, would meet its own numbers again.
+enum pair_between {
+  BETWEEN_FLIGHT = 1,   // where in a medium a path may collide, and whether it does
+  BETWEEN_CROSSING = 2, // whether a surface that it may see through stops it
+  BETWEEN_SHADOW = 3,   // where in a medium its shadow ray may be attenuated
+};
+static inline uint32_t pair_between(enum pair_between what, int vertex, uint32_t k) {
+  return (uint32_t)what << 30 | ((uint32_t)vertex & 0x3fffu) << 16 | (k & 0xffffu);
 }
 
 #endif

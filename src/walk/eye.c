@@ -31,6 +31,7 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
     walk->owner[j] = j;
     walk->pdf[j] = 0;
     walk->kind[j] = LIGHT_PATH_EMITTED;
+    if (walk->medium) walk->medium[j] = walk->scene->camera_medium;
     for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] = 1;
   }
 }
@@ -38,7 +39,7 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
 static void add_background(const struct walk *walk, struct eye_point *point) {
   const struct scene *scene = walk->scene;
   for (int j = 0; j < walk->n; j++) {
-    if (walk->hit[j].primitive != PRIMITIVE_NONE) continue;
+    if (!walk_escaped(walk, j)) continue;
     for (uint32_t k = 0; k < scene->n_infinite; k++) {
       const struct light *light = &scene->light[scene->infinite[k]];
       double rgb[3];
@@ -54,6 +55,7 @@ static void stop(const struct walk *walk, int j, const struct surface *surface,
                  const struct bsdf *bsdf, double share, struct eye_point *point) {
   point->hit = true;
   point->vertex = walk->vertex;
+  point->medium = walk->medium ? walk->medium[j] : MEDIUM_NONE;
   point->p = surface->p;
   point->primitive = surface->primitive;
   point->bsdf = *bsdf;
@@ -64,8 +66,29 @@ static void stop(const struct walk *walk, int j, const struct surface *surface,
   point->footprint = differential_footprint(&walk->differential[j]);
 }
 
+// In a medium it ends at the first collision: what the medium scatters there stands for the ray.
+static void stop_in_medium(const struct walk *walk, int j, int depth, struct eye_point *point) {
+  const struct collision *collision = &walk->collision[j];
+  for (int c = 0; c < walk->n_channels; c++)
+    point->emitted[c] += collision->weight[c] * collision->at.emission[c];
+  if (walk->vertex >= depth) return;
+  point->hit = point->volume = true;
+  point->vertex = walk->vertex;
+  point->medium = walk->medium[j];
+  point->p = walk_collision_point(walk, j);
+  point->primitive = PRIMITIVE_NONE;
+  point->bsdf = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
+  point->wo = vec_scale(walk->ray[j].d, -1);
+  for (int c = 0; c < walk->n_channels; c++)
+    point->weight[c] = collision->weight[c] * collision->at.sigma_s[c];
+}
+
 // At a hit: add what it emits, then stop here or follow a delta lobe. True: the path goes on.
 static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
+  if (walk_collided(walk, j)) {
+    stop_in_medium(walk, j, depth, point);
+    return false;
+  }
   struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
   struct vec wo = vec_scale(walk->ray[j].d, -1);
   if (walk->differential)

@@ -8,10 +8,12 @@
 // What one pixel sees. Where a surface has delta lobes beside others, which of the two is seen is
 // random, so that a path has one point.
 struct eye_point {
-  bool hit;   // the path ended on a surface; false: it left the scene or was absorbed
-  int vertex; // scatterings between the camera and here
+  bool hit;        // the path ended here; false: it left the scene or was absorbed
+  bool volume;     // in a medium: bsdf is its phase function, weight holds sigma_s
+  uint32_t medium; // that the path arrived through; MEDIUM_NONE: a vacuum
+  int vertex;      // scatterings between the camera and here
   struct vec p;
-  uint32_t primitive;       // p is on it
+  uint32_t primitive;       // p is on it; PRIMITIVE_NONE: in a medium
   struct bsdf bsdf;         // type NULL: scatters nothing
   struct vec wo;            // towards the eye, unit length
   double weight[3];         // of radiance leaving towards wo, in the pixel

@@ -41,10 +41,17 @@ void photons_append(struct photons *photons, const struct photons *more, struct 
 // What one call of photons_trace is about.
 struct pass {
   const struct photon_pass *of;
-  const struct photon_filter *filter;
-  struct photons *photons;
+  const struct photon_sinks *to;
   struct arena *arena;
 };
+
+static uint32_t starts_in(const struct scene *scene, const struct light *light,
+                          const struct ray *ray) {
+  if (ray->leaving == PRIMITIVE_NONE) return light->medium;
+  struct surface surface = scene_surface(scene, ray, (struct hit){0, ray->leaving});
+  const struct shape *shape = &scene->shape[surface.shape];
+  return vec_dot(ray->d, surface.ng) > 0 ? shape->outside : shape->inside;
+}
 
 void photons_emit(struct walk *walk) {
   const struct scene *scene = walk->scene;
@@ -59,6 +66,7 @@ void photons_emit(struct walk *walk) {
     light->type->emit(scene, light, u, &emission);
     walk_start(walk, j, emission.ray);
     walk->kind[j] = LIGHT_PATH_DIRECT;
+    if (walk->medium) walk->medium[j] = starts_in(scene, light, &emission.ray);
     for (int c = 0; c < walk->n_channels; c++)
       walk->throughput[c][j] = emission.flux[c] / light->probability;
   }
@@ -73,55 +81,78 @@ static bool is_gathered(const struct scene *scene, const struct surface *surface
 }
 
 static void store(const struct walk *walk, int j, const struct pass *pass,
-                  const struct surface *surface, const struct bsdf *bsdf) {
-  struct photons *photons = pass->photons;
-  const struct photon_filter *filter = pass->filter;
-  struct vec wi = vec_scale(walk->ray[j].d, -1);
+                  const struct photon_sink *sink, struct vec p, const double flux[3]) {
+  struct photons *photons = sink->photons;
   if (walk->vertex < pass->of->first_vertex) return;
-  if (!is_gathered(walk->scene, surface, bsdf, wi)) return;
-  if (filter && !filter->keep(filter->data, surface->p)) return;
+  if (sink->filter && !sink->filter->keep(sink->filter->data, p)) return;
   int64_t at = photons->count++;
-  photons->position[at] = surface->p;
-  photons->wi[at] = wi;
-  for (int c = 0; c < walk->n_channels; c++) photons->flux[c][at] = walk->throughput[c][j];
+  photons->position[at] = p;
+  photons->wi[at] = vec_scale(walk->ray[j].d, -1);
+  for (int c = 0; c < walk->n_channels; c++) photons->flux[c][at] = flux[c];
   photons->vertex[at] = walk->vertex < UINT16_MAX ? (uint16_t)walk->vertex : UINT16_MAX;
   photons->kind[at] = walk->kind[j];
+}
+
+static void store_on_surface(const struct walk *walk, int j, const struct pass *pass,
+                             const struct surface *surface, const struct bsdf *bsdf) {
+  double flux[3];
+  if (!is_gathered(walk->scene, surface, bsdf, vec_scale(walk->ray[j].d, -1))) return;
+  for (int c = 0; c < walk->n_channels; c++) flux[c] = walk->throughput[c][j];
+  store(walk, j, pass, &pass->to->surface, surface->p, flux);
 }
 
 // A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
 // which then sees an opaque point with all of the light on it: those that pass are stored as well.
 static void store_passed(struct walk *walk, const struct pass *pass) {
   const struct crossing *crossing = &walk->crossing;
-  photons_reserve(pass->photons, crossing->n_passed, pass->arena);
+  photons_reserve(pass->to->surface.photons, crossing->n_passed, pass->arena);
   for (int k = 0; k < crossing->n_passed; k++) {
     const struct surface *surface = &crossing->surface[k];
     if (scene_material(walk->scene, surface)->type->passed) continue;
     struct bsdf bsdf = surface_bsdf(walk->scene, surface, 0);
-    store(walk, crossing->passed[k], pass, surface, &bsdf);
+    store_on_surface(walk, crossing->passed[k], pass, surface, &bsdf);
   }
 }
 
-// At every hit: store what can scatter towards an eye, then scatter.
+// Where a path has collided with a medium. True: it goes on.
+static bool meet_medium(struct walk *walk, int j, const struct pass *pass, bool last) {
+  const struct photon_sink *sink = &pass->to->volume;
+  if (sink->photons)
+    store(walk, j, pass, sink, walk_collision_point(walk, j), walk->collision[j].weight);
+  return !last && walk_scatter_in_medium(walk, j);
+}
+
+// At every vertex: store what can scatter towards an eye, then scatter.
 static void meet(struct walk *walk, const struct pass *pass) {
   bool last = walk->vertex + 1 >= pass->of->depth;
   int alive = 0;
   walk_vertex_random(walk);
-  photons_reserve(pass->photons, walk->n, pass->arena);
+  photons_reserve(pass->to->surface.photons, walk->n, pass->arena);
+  if (pass->to->volume.photons) photons_reserve(pass->to->volume.photons, walk->n, pass->arena);
   for (int j = 0; j < walk->n; j++) {
+    if (walk_collided(walk, j)) {
+      if (meet_medium(walk, j, pass, last)) walk_move(walk, alive++, j);
+      continue;
+    }
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
     struct bsdf bsdf = walk_bsdf(walk, j, &surface);
-    store(walk, j, pass, &surface, &bsdf);
+    store_on_surface(walk, j, pass, &surface, &bsdf);
     if (!last && bsdf.type && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   walk->n = alive;
 }
 
-void photons_trace(struct walk *walk, const struct photon_pass *of,
-                   const struct photon_filter *filter, struct photons *photons,
+static void empty(const struct photon_sink *sink, const struct walk *walk) {
+  if (!sink->photons) return;
+  sink->photons->count = 0;
+  sink->photons->n_channels = walk->n_channels;
+}
+
+void photons_trace(struct walk *walk, const struct photon_pass *of, const struct photon_sinks *to,
                    struct arena *arena) {
-  struct pass pass = {of, filter, photons, arena};
-  photons->count = 0;
-  photons->n_channels = walk->n_channels;
+  struct pass pass = {of, to, arena};
+  empty(&to->surface, walk);
+  empty(&to->volume, walk);
   if (walk->scene->n_lights == 0) return;
   for (uint64_t first = of->first; first < of->n_emitted; first += WALK_BATCH) {
     uint64_t left = of->n_emitted - first;

@@ -10,7 +10,7 @@ struct photons {
   int n_channels;
   struct vec *position;
   struct vec *wi;   // towards where it came from, unit length
-  double *flux[3];  // W, not divided by n_emitted
+  double *flux[3];  // W, not divided by n_emitted; in media W x scene unit: see photon_pass.volume
   uint16_t *vertex; // scatterings on its way; 65535 for more
   uint8_t *kind;    // enum light_path: what an eye that looks here completes
 };
@@ -41,10 +41,25 @@ struct photon_filter {
 // light leaves it.
 void photons_emit(struct walk *);
 
-// One pass: walk->key and walk->iteration are set by the caller; photons is emptied first
-// and grows in the arena. Zeroed photons are ready for use.
-void photons_trace(struct walk *, const struct photon_pass *, const struct photon_filter *,
-                   struct photons *, struct arena *);
+// Where photons go: emptied first, grown in the arena. Zeroed photons are ready for use.
+struct photon_sink {
+  struct photons *photons; // NULL: nobody asks
+  const struct photon_filter *filter;
+};
+
+struct photon_sinks {
+  struct photon_sink surface;
+  // At every collision in a medium, scattered afterwards or absorbed: flux over the density of
+  // collisions there, so that what is estimated is the density of fluence, smooth also where
+  // sigma_t is not. The radiance scattered towards w is
+  //   sigma_s(x) / n_emitted * sum k_r(x_p - x) f(w, w_p) flux_p,
+  // k_r in scene units^-3 (theory 1.1, with sigma_t of each photon's own place).
+  struct photon_sink volume;
+};
+
+// One pass: walk->key and walk->iteration are set by the caller.
+void photons_trace(struct walk *, const struct photon_pass *, const struct photon_sinks *,
+                   struct arena *);
 
 // Puts the photons of another part of the pass behind these.
 void photons_append(struct photons *, const struct photons *more, struct arena *);

@@ -1,6 +1,7 @@
 #include "walk/walk.h"
 
 #include "walk/dimension.h"
+#include "walk/flight.h"
 
 static struct shadow shadow_new(int n_channels, struct arena *arena) {
   struct shadow shadow = {
@@ -26,6 +27,15 @@ static struct crossing crossing_new(struct arena *arena) {
   };
 }
 
+static void enter_media(struct walk *walk, struct arena *arena) {
+  walk->medium = arena_new(arena, uint32_t, WALK_BATCH);
+  walk->collision = arena_new(arena, struct collision, WALK_BATCH);
+  walk->flights = arena_new(arena, uint32_t, WALK_BATCH);
+  walk->shadow.medium = arena_new(arena, uint32_t, WALK_BATCH);
+  walk->shadow.flights = arena_new(arena, uint32_t, WALK_BATCH);
+  walk->shadow.path = arena_new(arena, uint64_t, WALK_BATCH);
+}
+
 struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct features features,
                       struct arena *arena) {
   struct walk *walk = arena_new(arena, struct walk, 1);
@@ -47,6 +57,7 @@ struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct f
     for (int k = 0; k < 2; k++) walk->u[slot][k] = arena_new(arena, double, WALK_BATCH);
   walk->shadow = shadow_new(walk->n_channels, arena);
   if (features.see_through) walk->crossing = crossing_new(arena);
+  if (features.media) enter_media(walk, arena);
   return walk;
 }
 
@@ -83,6 +94,10 @@ void walk_move(struct walk *walk, int to, int from) {
   walk->owner[to] = walk->owner[from];
   if (walk->differential) walk->differential[to] = walk->differential[from];
   walk->kind[to] = walk->kind[from];
+  if (walk->medium) {
+    walk->medium[to] = walk->medium[from];
+    walk->collision[to] = walk->collision[from];
+  }
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
 
@@ -108,6 +123,7 @@ static void list_crossings(struct walk *walk) {
 
 void walk_trace(struct walk *walk) {
   bvh_closest(walk->bvh, walk->ray, walk->hit, walk->n);
+  if (walk->medium) flight_all(walk);
   if (walk->features.see_through) list_crossings(walk);
 }
 
@@ -119,6 +135,8 @@ static void decide_crossings(struct walk *walk) {
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
     if (crossing->u[0][k] < surface_opacity(walk->scene, &surface)) continue;
     int to = crossing->n_passed++;
+    if (walk->medium && scene_material(walk->scene, &surface)->type->passed)
+      walk->medium[j] = surface_medium(walk->scene, &surface, walk->ray[j].d, walk->medium[j]);
     walk->ray[j] = walk_ray_beyond(&surface, &walk->ray[j]);
     crossing->ray[to] = walk->ray[j];
     crossing->surface[to] = surface;
@@ -130,13 +148,15 @@ void walk_cross(struct walk *walk) {
   struct crossing *crossing = &walk->crossing;
   for (int k = 0; k < crossing->n; k++) crossing->path[k] = walk->path[crossing->slot[k]];
   rng_fill(walk->key, walk->iteration, crossing->path, crossing->n,
-           pair_of_crossing(walk->vertex, crossing->number++), crossing->u[0], crossing->u[1]);
+           pair_between(BETWEEN_CROSSING, walk->vertex, (uint32_t)crossing->number++),
+           crossing->u[0], crossing->u[1]);
   decide_crossings(walk);
   bvh_closest(walk->bvh, crossing->ray, crossing->hit, crossing->n_passed);
   crossing->n = 0;
   for (int k = 0; k < crossing->n_passed; k++) {
     int j = crossing->passed[k];
     walk->hit[j] = crossing->hit[k];
+    if (walk->medium) flight_path(walk, j);
     if (walk_meets_see_through(walk->scene, walk->hit[j])) crossing->slot[crossing->n++] = j;
   }
 }
@@ -149,7 +169,7 @@ void walk_trace_through(struct walk *walk) {
 void walk_drop_escaped(struct walk *walk) {
   int alive = 0;
   for (int j = 0; j < walk->n; j++)
-    if (walk->hit[j].primitive != PRIMITIVE_NONE) walk_move(walk, alive++, j);
+    if (!walk_escaped(walk, j)) walk_move(walk, alive++, j);
   walk->n = alive;
 }
 
@@ -187,7 +207,32 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
     differential_scatter(&walk->differential[j], walk->scene, surface, bsdf->n, walk->ray[j].d,
                          sample.wi, sample.eta2);
   walk_start(walk, j, (struct ray){surface->p, sample.wi, INFINITY, surface->primitive});
+  if (walk->medium)
+    walk->medium[j] = surface_medium(walk->scene, surface, sample.wi, walk->medium[j]);
   walk->pdf[j] = sample.pdf;
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], sample.pdf == 0);
+  return true;
+}
+
+bool walk_scatter_in_medium(struct walk *walk, int j) {
+  const struct collision *collision = &walk->collision[j];
+  const struct medium_point *at = &collision->at;
+  double u[3] = {walk->u[0][0][j], walk->u[0][1][j], walk->u[1][0][j]}, albedo[3] = {0};
+  for (int c = 0; c < walk->n_channels; c++) {
+    double sigma_t = at->sigma_a[c] + at->sigma_s[c];
+    albedo[c] = sigma_t > 0 ? at->sigma_s[c] / sigma_t : 0;
+  }
+  double survive = largest(albedo, walk->n_channels);
+  if (!(walk->u[1][1][j] < survive)) return false;
+  struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
+  struct bsdf_sample sample;
+  if (!bsdf_sample(&phase, vec_scale(walk->ray[j].d, -1), u, walk->transport, &sample))
+    return false;
+  for (int c = 0; c < walk->n_channels; c++)
+    walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / survive;
+  struct vec p = walk_collision_point(walk, j);
+  walk_start(walk, j, (struct ray){p, sample.wi, INFINITY, PRIMITIVE_NONE});
+  walk->pdf[j] = sample.pdf;
+  walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);
   return true;
 }

@@ -12,6 +12,13 @@
 
 enum { WALK_BATCH = 4096 };
 
+// Where a segment has ended within a medium. Photons: throughput [W], so weight [W x scene unit];
+// eye paths: weight of what is met next, per length.
+struct collision {
+  struct medium_point at;
+  double weight[3]; // throughput / density of collisions: its mean over paths is the fluence there
+};
+
 struct walk {
   const struct scene *scene; // of this iteration, as the tree
   const struct bvh *bvh;
@@ -33,7 +40,15 @@ struct walk {
                          // estimation cannot find what it meets (delta lobe, camera)
   int *owner;            // eye paths: the point this path belongs to
   struct differential *differential; // [n] of eye paths; NULL: nobody asks
-  uint8_t *kind;         // enum light_path: what an emitter (photons: an eye) here completes
+  uint8_t *kind; // enum light_path: what an emitter (photons: an eye) here completes
+  // Only where there are media, else NULL.
+  uint32_t *medium;            // [n] of the segment: row of scene.medium or MEDIUM_NONE
+  struct collision *collision; // [n] of those that collided: walk_collided
+  uint32_t *flights;           // [n] random numbers used since `vertex` (walk/flight.h)
+  // Told of each piece from t0 to t1 of ray j that is flown through a medium with the throughput
+  // as it stands; NULL: nobody asks.
+  void (*flown)(void *data, const struct walk *, int j, double t0, double t1);
+  void *flown_data;
 
   double *u[4][2]; // scratch: pairs of random numbers
   struct shadow {  // scratch of connect_lights, [WALK_BATCH] each
@@ -43,6 +58,8 @@ struct walk {
     uint32_t *emitter;
     int *owner;
     int n;
+    uint32_t *medium, *flights; // only where there are media
+    uint64_t *path;
   } shadow;
   struct crossing {          // paths before a see-through surface; only where the scene has any
     int n, number;           // of paths that stand before one; of the next crossing since `vertex`
@@ -83,7 +100,19 @@ void walk_trace_through(struct walk *);
 bool walk_meets_see_through(const struct scene *, struct hit);
 struct ray walk_ray_beyond(const struct surface *, const struct ray *);
 
-// Ends the paths that hit nothing.
+// A path that hit nothing: it left the scene, or it ended in a medium, at hit.t.
+static inline bool walk_collided(const struct walk *walk, int j) {
+  return walk->hit[j].primitive == PRIMITIVE_NONE && walk->hit[j].t < INFINITY;
+}
+static inline bool walk_escaped(const struct walk *walk, int j) {
+  return walk->hit[j].primitive == PRIMITIVE_NONE && walk->hit[j].t == INFINITY;
+}
+// Where path j has collided.
+static inline struct vec walk_collision_point(const struct walk *walk, int j) {
+  return vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t);
+}
+
+// Ends the paths that left the scene.
 void walk_drop_escaped(struct walk *);
 
 // The numbers that paths need at a vertex: u[0] direction, u[1] choice, and u[2][1] the material's
@@ -100,5 +129,8 @@ void walk_move(struct walk *, int to, int from);
 // with the largest channel of the weight, the scaling of radiance by refraction left out.
 // False: absorbed. True: ray, from, throughput, pdf and kind are those of the next segment.
 bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsdf *);
+
+// The same where path j has collided; roulette survives with the largest channel of the albedo.
+bool walk_scatter_in_medium(struct walk *, int j);
 
 #endif

@@ -29,7 +29,8 @@ static struct photons trace(const struct scene *scene, struct photon_pass pass, 
   struct photons photons = {0};
   walk->key = rng_key(rng_hash_name("walk"), 1, RNG_PHOTONS);
   walk->iteration = iteration;
-  photons_trace(walk, &pass, NULL, &photons, &arena);
+  struct photon_sinks sinks = {.surface = {&photons, NULL}};
+  photons_trace(walk, &pass, &sinks, &arena);
   return photons;
 }
 
