@@ -66,23 +66,19 @@ static void add_background(const struct path *state, double *frame) {
   }
 }
 
-// To a light, from p on a primitive or (PRIMITIVE_NONE) in a medium, with weight[c] times what is
-// scattered.
-static void connect(const struct path *state, int j, struct vec p, uint32_t primitive,
-                    const struct bsdf *bsdf, const double weight[3]) {
+// To a light, from a point of path j whose bsdf, place and weight are given.
+static inline void connect(const struct path *state, int j, struct connection *from) {
   struct walk *walk = state->walk;
   if (light_path_after(walk->kind[j], false) & state->measure->left_out) return;
-  struct connection connection = {.bsdf = bsdf,
-                                  .p = p,
-                                  .primitive = primitive,
-                                  .medium = walk->medium ? walk->medium[j] : MEDIUM_NONE,
-                                  .path = walk->path[j],
-                                  .wo = vec_scale(walk->ray[j].d, -1),
-                                  .owner = walk->owner[j]};
-  if (bsdf_delta_probability(bsdf, connection.wo, TRANSPORT_RADIANCE) >= 1) return;
-  memcpy(connection.weight, weight, sizeof connection.weight);
+  from->wo = vec_scale(walk->ray[j].d, -1);
+  from->owner = walk->owner[j];
+  if (walk->medium) {
+    from->medium = walk->medium[j];
+    from->path = walk->path[j];
+  }
+  if (bsdf_delta_probability(from->bsdf, from->wo, TRANSPORT_RADIANCE) >= 1) return;
   double u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
-  connect_add(walk, &connection, walk->u[2][0][j], u, true);
+  connect_add(walk, from, walk->u[2][0][j], u, true);
 }
 
 // At a surface. True: the path goes on.
@@ -93,9 +89,9 @@ static bool meet_surface(const struct path *state, int j, bool last, double *fra
   if (last) return false;
   struct bsdf bsdf = walk_bsdf(walk, j, &surface);
   if (!bsdf.type) return false;
-  double weight[3];
-  for (int c = 0; c < walk->n_channels; c++) weight[c] = walk->throughput[c][j];
-  connect(state, j, surface.p, surface.primitive, &bsdf, weight);
+  struct connection from = {.bsdf = &bsdf, .p = surface.p, .primitive = surface.primitive};
+  for (int c = 0; c < walk->n_channels; c++) from.weight[c] = walk->throughput[c][j];
+  connect(state, j, &from);
   return walk_scatter(walk, j, &surface, &bsdf);
 }
 
@@ -104,14 +100,15 @@ static bool meet_medium(const struct path *state, int j, bool last, double *fram
   struct walk *walk = state->walk;
   const struct collision *collision = &walk->collision[j];
   int n = walk->n_channels;
-  double weight[3];
   if (!(walk->kind[j] & state->measure->left_out))
     for (int c = 0; c < n; c++)
       frame[walk->owner[j] * n + c] += collision->weight[c] * collision->at.emission[c];
   if (last) return false;
   struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
-  for (int c = 0; c < n; c++) weight[c] = collision->weight[c] * collision->at.sigma_s[c];
-  connect(state, j, walk_collision_point(walk, j), PRIMITIVE_NONE, &phase, weight);
+  struct connection from = {
+      .bsdf = &phase, .p = walk_collision_point(walk, j), .primitive = PRIMITIVE_NONE};
+  for (int c = 0; c < n; c++) from.weight[c] = collision->weight[c] * collision->at.sigma_s[c];
+  connect(state, j, &from);
   return walk_scatter_in_medium(walk, j);
 }
 

@@ -80,25 +80,27 @@ static bool is_gathered(const struct scene *scene, const struct surface *surface
   return bsdf->type && bsdf_delta_probability(bsdf, wo, TRANSPORT_IMPORTANCE) < 1;
 }
 
-static void store(const struct walk *walk, int j, const struct pass *pass,
-                  const struct photon_sink *sink, struct vec p, const double flux[3]) {
+// The place of a new photon at p, its flux left to the caller; -1: nobody sees it.
+static inline int64_t store(const struct walk *walk, int j, const struct pass *pass,
+                            const struct photon_sink *sink, struct vec p) {
   struct photons *photons = sink->photons;
-  if (walk->vertex < pass->of->first_vertex) return;
-  if (sink->filter && !sink->filter->keep(sink->filter->data, p)) return;
+  if (walk->vertex < pass->of->first_vertex) return -1;
+  if (sink->filter && !sink->filter->keep(sink->filter->data, p)) return -1;
   int64_t at = photons->count++;
   photons->position[at] = p;
   photons->wi[at] = vec_scale(walk->ray[j].d, -1);
-  for (int c = 0; c < walk->n_channels; c++) photons->flux[c][at] = flux[c];
   photons->vertex[at] = walk->vertex < UINT16_MAX ? (uint16_t)walk->vertex : UINT16_MAX;
   photons->kind[at] = walk->kind[j];
+  return at;
 }
 
 static void store_on_surface(const struct walk *walk, int j, const struct pass *pass,
                              const struct surface *surface, const struct bsdf *bsdf) {
-  double flux[3];
+  const struct photon_sink *sink = &pass->to->surface;
   if (!is_gathered(walk->scene, surface, bsdf, vec_scale(walk->ray[j].d, -1))) return;
-  for (int c = 0; c < walk->n_channels; c++) flux[c] = walk->throughput[c][j];
-  store(walk, j, pass, &pass->to->surface, surface->p, flux);
+  int64_t at = store(walk, j, pass, sink, surface->p);
+  for (int c = 0; at >= 0 && c < walk->n_channels; c++)
+    sink->photons->flux[c][at] = walk->throughput[c][j];
 }
 
 // A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
@@ -114,12 +116,12 @@ static void store_passed(struct walk *walk, const struct pass *pass) {
   }
 }
 
-// Where a path has collided with a medium. True: it goes on.
-static bool meet_medium(struct walk *walk, int j, const struct pass *pass, bool last) {
+static void store_in_medium(const struct walk *walk, int j, const struct pass *pass) {
   const struct photon_sink *sink = &pass->to->volume;
-  if (sink->photons)
-    store(walk, j, pass, sink, walk_collision_point(walk, j), walk->collision[j].weight);
-  return !last && walk_scatter_in_medium(walk, j);
+  if (!sink->photons) return;
+  int64_t at = store(walk, j, pass, sink, walk_collision_point(walk, j));
+  for (int c = 0; at >= 0 && c < walk->n_channels; c++)
+    sink->photons->flux[c][at] = walk->collision[j].weight[c];
 }
 
 // At every vertex: store what can scatter towards an eye, then scatter.
@@ -131,7 +133,8 @@ static void meet(struct walk *walk, const struct pass *pass) {
   if (pass->to->volume.photons) photons_reserve(pass->to->volume.photons, walk->n, pass->arena);
   for (int j = 0; j < walk->n; j++) {
     if (walk_collided(walk, j)) {
-      if (meet_medium(walk, j, pass, last)) walk_move(walk, alive++, j);
+      store_in_medium(walk, j, pass);
+      if (!last && walk_scatter_in_medium(walk, j)) walk_move(walk, alive++, j);
       continue;
     }
     struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);

@@ -226,8 +226,7 @@ bool walk_scatter_in_medium(struct walk *walk, int j) {
   if (!(walk->u[1][1][j] < survive)) return false;
   struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
   struct bsdf_sample sample;
-  if (!bsdf_sample(&phase, vec_scale(walk->ray[j].d, -1), u, walk->transport, &sample))
-    return false;
+  phase.type->sample(&phase, vec_scale(walk->ray[j].d, -1), u, walk->transport, &sample);
   for (int c = 0; c < walk->n_channels; c++)
     walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / survive;
   struct vec p = walk_collision_point(walk, j);
