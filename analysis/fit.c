@@ -39,7 +39,8 @@ static bool is_doubtful(const struct fit_row *row) {
 }
 
 // Any disagreement decides; otherwise the run agrees if any row does and none is doubtful. Rows
-// that cannot tell do not spoil those that can.
+// that cannot tell do not spoil those that can. That no bias was detected is all there is to say
+// only if there is no other row.
 static enum verdict run_verdict(const struct fit *fit) {
   int count[N_VERDICTS] = {0};
   bool any_doubtful = false;
@@ -50,12 +51,20 @@ static enum verdict run_verdict(const struct fit *fit) {
   if (count[VERDICT_DISAGREE]) return VERDICT_DISAGREE;
   if (any_doubtful) return VERDICT_NOT_RESOLVABLE;
   if (count[VERDICT_AGREE]) return VERDICT_AGREE;
-  return count[VERDICT_NOT_DETECTED] ? VERDICT_NOT_DETECTED : VERDICT_NOT_RESOLVABLE;
+  return count[VERDICT_NOT_RESOLVABLE] || !count[VERDICT_NOT_DETECTED] ? VERDICT_NOT_RESOLVABLE
+                                                                       : VERDICT_NOT_DETECTED;
 }
 
 // A rate is only stated where a verdict stands on it.
 static void withdraw_rate(struct fit_row *row) {
   row->rate = row->rate_se = row->rate_lo = row->rate_hi = NAN;
+}
+
+// Why nothing is said of a rate, where no fit or test has said so.
+static const char *why_unresolved(const struct fit_row *row) {
+  if (row->verdict != VERDICT_NOT_RESOLVABLE || rejects(row, true)) return NULL;
+  return row->first >= row->cell->iterations ? "one iteration"
+                                             : "too little data (photonlab plan: how many runs)";
 }
 
 static void leave_unjudged(struct fit *fit) {
@@ -72,6 +81,7 @@ static void judge(struct fit *fit) {
     struct fit_row *row = &fit->row[r];
     for (int t = 0; t < row->n_tests; t++) row->test[t].rejects = row->test[t].p < fit->test_level;
     row->verdict = row_verdict(row);
+    if (!row->why) row->why = why_unresolved(row);
     if (row->verdict == VERDICT_NOT_DETECTED || row->verdict == VERDICT_NOT_RESOLVABLE)
       withdraw_rate(row);
   }
@@ -205,7 +215,8 @@ double fit_largest_rate_se(const struct results *results, struct arena scratch,
   if (!fit_results(results, &scratch, &fit, problem)) return INFINITY;
   for (int r = 0; r < fit.n_rows; r++) {
     const struct fit_row *row = &fit.row[r];
-    bool asked = !isnan(row->rate_theory) && row->why != fit_no_reference;
+    bool known = row->why != fit_no_reference && row->why != fit_dark_reference;
+    bool asked = !isnan(row->rate_theory) && known;
     if (asked) largest = fmax(largest, isnan(row->rate_se) ? INFINITY : row->rate_se);
   }
   return largest;

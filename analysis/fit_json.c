@@ -71,6 +71,7 @@ static json_t *row_json(const struct fit_row *row) {
   }
   set(object, "tests", tests_json(row));
   set(object, "verdict", json_string(verdict_names[row->verdict]));
+  set(object, "why", row->why ? json_string(row->why) : json_null());
   return object;
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 const char fit_no_reference[] = "no reference";
+const char fit_dark_reference[] = "the reference found no light, but photons did";
 const char fit_noisy_reference[] = "the reference is too noisy (photonlab plan: how precise)";
 static const double largest_rate_se = 0.1, widest_interval = 0.3;
 
@@ -127,14 +128,27 @@ static bool reference_dominates(const struct prediction *theory, const struct se
   return without.measured && b->coefficient_se >= sqrt(2) * without.coefficient_se;
 }
 
+// Samples that all miss what light there is look exact. Where there is none runs say nothing
+// either.
+static bool found_no_light(const struct probe *probe, const struct prediction *theory) {
+  return isfinite(probe->reference) && !theory->closed_form && theory->truth_se == 0 &&
+         theory->truth == probe->emitted;
+}
+
+static const char *why_no_truth(const struct series *series, const struct prediction *theory,
+                                const struct fit_row *row) {
+  if (!isfinite(theory->truth)) return fit_no_reference;
+  return !series->richardson && found_no_light(row->probe, theory) ? fit_dark_reference : NULL;
+}
+
 static void fit_bias_series(const struct fit_estimators *by, const struct results *results,
                             const struct series *series, const struct prediction *theory,
                             const struct variance_fit *v, double dependence, struct arena scratch,
                             struct fit *fit) {
   struct fit_row *row = new_row(results, series, theory, QUANTITY_BIAS, fit);
   struct bias_fit b = {0};
-  if (!v->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
-  row->why = v->why || isfinite(theory->truth) ? v->why : fit_no_reference;
+  row->why = v->why ? v->why : why_no_truth(series, theory, row);
+  if (!row->why) b = fit_bias(theory, series->iteration, v, weights_of(v), &scratch);
   if (!row->why && theory->bias_kind == BIAS_STAYS) row->why = "an edge stays in the disc";
   struct bias_fit said = b;
   if (b.measured && by) by->bias(theory, series, weights_of(v), v, &said, scratch);

@@ -268,6 +268,20 @@ static void test_noisy_reference(void **state) {
   assert_non_null(strstr(fit.row[1].why, "the reference is too noisy"));
 }
 
+// Samples of a reference that all miss the light: their mean is 0, and so is its standard error.
+static void test_dark_reference(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.name = "fit: dark reference", s.closed_form = false;
+  struct prediction theory = synthetic_prediction(&s, &arena);
+  theory.truth = theory.truth_se = 0;
+  struct fit fit = synthetic_fit_with(&s, &theory, 1, &arena);
+  assert_int_equal(fit.row[0].verdict, VERDICT_AGREE);
+  assert_int_equal(fit.row[1].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_non_null(fit.row[1].why);
+  assert_non_null(strstr(fit.row[1].why, "the reference found no light"));
+}
+
 int main(void) {
   arena = arena_reserve();
   const struct CMUnitTest tests[] = {
@@ -286,6 +300,7 @@ int main(void) {
       {"light where there is none disagrees", test_light_in_the_dark, 0, 0, 0},
       {"a bias that theory expects and that is not there never agrees", test_missed_bias, 0, 0, 0},
       {"a reference that hides the rate is named", test_noisy_reference, 0, 0, 0},
+      {"a reference that found no light is none", test_dark_reference, 0, 0, 0},
       {"where the model does not fit no rate is stated", test_no_rate_without_fit, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit_plants", tests, NULL, NULL);

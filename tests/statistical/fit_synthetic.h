@@ -166,6 +166,8 @@ static inline struct results *synthetic_results(const struct synthetic *s, const
                         .law = synthetic_law(s),
                         .alpha = s->alpha,
                         .radius = 1,
+                        .iterations = s->iterations,
+                        .runs = s->runs,
                         .quantities = QUANTITY_VARIANCE | QUANTITY_BIAS};
   struct probe **probe = arena_new(arena, struct probe *, 1);
   probe[0] = arena_new(arena, struct probe, 1);

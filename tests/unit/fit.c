@@ -38,7 +38,7 @@ static void test_json(void **state) {
   json_decref(root);
 }
 
-enum kind { STRING, NUMBER, PAIR, COUNT, TRUTH, LIST };
+enum kind { STRING, REASON, NUMBER, PAIR, COUNT, TRUTH, LIST };
 struct key {
   const char *name;
   enum kind kind;
@@ -80,7 +80,8 @@ static const struct key row_keys[] = {{"cell", COUNT},
                                       {"verdict", STRING},
                                       END};
 // What the fit adds of its own.
-static const struct key added_keys[] = {{"closed_form", TRUTH}, {"first_iteration", COUNT}, END};
+static const struct key added_keys[] = {
+    {"closed_form", TRUTH}, {"first_iteration", COUNT}, {"why", REASON}, END};
 static const struct key bias_keys[] = {
     {"snr", NUMBER}, {"expected_snr", NUMBER}, {"upper_bound", NUMBER}, END};
 static const struct key test_keys[] = {
@@ -92,6 +93,8 @@ static bool is_kind(json_t *value, enum kind kind) {
   switch (kind) {
   case STRING:
     return json_is_string(value);
+  case REASON:
+    return json_is_string(value) || json_is_null(value);
   case NUMBER:
     return is_number(value);
   case COUNT:
@@ -197,6 +200,7 @@ static void test_unknown_is_null(void **state) {
   json_t *row = json_array_get(json_object_get(root, "cells"), 0);
   assert_true(json_is_null(json_object_get(row, "rate")));
   assert_true(json_is_null(json_object_get(row, "coefficient")));
+  assert_string_equal(json_string_value(json_object_get(row, "why")), "one run");
   assert_string_equal(json_string_value(json_object_get(row, "verdict")), "not-resolvable");
   json_decref(root);
 }
@@ -275,16 +279,35 @@ static void test_table_tells_cells_apart(void **state) {
   free(same);
 }
 
-// What there is no fit for says why, and the last line counts the verdicts.
-static void test_table_says_why(void **state) {
-  (void)state;
-  struct synthetic s = base;
-  s.runs = 1;
+static void table_says(struct synthetic s, const char *says) {
   struct fit fit = synthetic_fit(&s, 1, &arena);
   char *text = table_of(&fit);
-  assert_non_null(strstr(text, "not-resolvable: one run"));
-  assert_non_null(strstr(text, ": not-resolvable (2 not-resolvable; family-wise"));
+  if (!strstr(text, says)) fail_msg("expected '%s' in\n%s", says, text);
   free(text);
+}
+
+// What has no rate says why, and the last line counts the verdicts.
+static void test_table_says_why(void **state) {
+  (void)state;
+  struct synthetic one = base, few = base, single = base;
+  one.runs = 1;
+  table_says(one, "not-resolvable: one run");
+  table_says(one, ": not-resolvable (2 not-resolvable; family-wise");
+  few.runs = 4, few.iterations = 9; // standard errors of rates above 0.3
+  table_says(few, "not-resolvable: too little data (photonlab plan: how many runs)");
+  single.iterations = 1;
+  table_says(single, "not-resolvable: one iteration");
+}
+
+// No bias is detected, but that is not all: the variance's rate is not known either.
+static void test_not_detected_is_not_all(void **state) {
+  (void)state;
+  struct synthetic s = base;
+  s.curvature = 0, s.runs = 4, s.iterations = 9;
+  struct fit fit = synthetic_fit(&s, 1, &arena);
+  assert_int_equal(fit.row[0].verdict, VERDICT_NOT_RESOLVABLE);
+  assert_int_equal(fit.row[1].verdict, VERDICT_NOT_DETECTED);
+  assert_int_equal(fit.verdict, VERDICT_NOT_RESOLVABLE);
 }
 
 // Sidak: the chance that none of n independent tests rejects is 0.99.
@@ -309,7 +332,8 @@ int main(void) {
        0},
       {"the table tells cells apart by the key that differs", test_table_tells_cells_apart, 0, 0,
        0},
-      {"the table says why there is no fit", test_table_says_why, 0, 0, 0},
+      {"the table says why there is no rate", test_table_says_why, 0, 0, 0},
+      {"a run is not-detected only if all of it is", test_not_detected_is_not_all, 0, 0, 0},
       {"the level is divided over all tests of the run", test_level, 0, 0, 0},
   };
   return cmocka_run_group_tests_name("fit", tests, make_folder, remove_folder);
