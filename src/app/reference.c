@@ -17,14 +17,20 @@ static bool said_before(const struct plan *plan, struct probe *const *probe, int
   return false;
 }
 
+// Where there is light, and no sample met it, the standard error is not that of the reference.
+static void print_probe(const char *scene, const struct probe *probe) {
+  bool dark = probe->hit && probe->reference == probe->emitted && probe->reference_se == 0;
+  printf("%-24s %6d %6d %14.8g %10.2g%s\n", scene, probe->x, probe->y, probe->reference,
+         probe->reference_se, dark ? "  no light found" : "");
+}
+
 static void print_group(const struct plan *plan, const struct group_plan *group,
                         struct probe *const *probe) {
   for (int e = 0; e < group->group->n_cells; e++) {
     int c = group->group->cell[e];
     if (isnan(probe[c][0].reference) || said_before(plan, probe, c)) continue;
     for (int p = 0; p < group->n_probes; p++)
-      printf("%-24s %6d %6d %14.8g %10.2g\n", plan->experiment->cell[c].scene, probe[c][p].x,
-             probe[c][p].y, probe[c][p].reference, probe[c][p].reference_se);
+      print_probe(plan->experiment->cell[c].scene, &probe[c][p]);
   }
 }
 

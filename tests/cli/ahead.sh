@@ -29,6 +29,23 @@ check 'they are what it logs' \
 check 'without a traced reference there is none' \
   grep -q 'no cell asks' <("$photonlab" reference "$scratch/none.yaml" -o "$scratch/results/none")
 
+sed -e 's/^radius.*/radius: 0.2/' -e "s,^scene.*,scene: $scratch/away.pbrt," "$scratch/traced.yaml" |
+  sed 's/^probes.*/probes: [[8, 8]]/' >"$scratch/away.yaml"
+cat >"$scratch/away.pbrt" <<'END'
+LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse"
+Shape "trianglemesh" "point3 P" [5 5 1  6 5 1  6 6 1]
+AttributeEnd
+Material "diffuse"
+Shape "trianglemesh" "point3 P" [-2 -2 0  2 -2 0  2 2 0  -2 2 0] "integer indices" [0 1 2 0 2 3]
+END
+check 'a reference that found no light says so' grep -q '^away .* no light found$' \
+  <("$photonlab" reference "$scratch/away.yaml" -o "$scratch/results/away" --quiet)
+
 plan=$("$photonlab" plan "$scratch/traced.yaml" --until 'rate_se <= 0.02' 2>/dev/null)
 check 'a plan has a line for each rate' test "$(grep -c ' variance \| bias ' <<<"$plan")" = 8
 check 'it is of the error asked for' grep -q 'to 0.02' <<<"$plan"
