@@ -170,6 +170,7 @@ struct manifest {
   uint64_t *runs;                         // by cell: those made
   int *looks;                             // by cell
   uint64_t log_sum, probes_sum, runs_sum; // runs_sum: where runs are kept
+  uint64_t experiment_sum;
 };
 
 static bool read_hex(json_t *object, const char *key, uint64_t *value) {
@@ -204,7 +205,8 @@ static bool take_manifest(json_t *root, struct arena *arena, struct manifest *ma
     manifest->looks[c] = (int)json_integer_value(looks);
   }
   read_hex(root, "runs_hash", &manifest->runs_sum);
-  return read_hex(root, "log_hash", &manifest->log_sum) &&
+  return read_hex(root, "experiment_hash", &manifest->experiment_sum) &&
+         read_hex(root, "log_hash", &manifest->log_sum) &&
          read_hex(root, "probes_hash", &manifest->probes_sum);
 }
 
@@ -222,7 +224,7 @@ static bool read_manifest(const char *directory, struct arena *arena, struct man
   }
   bool ok = take_manifest(root, arena, manifest);
   json_decref(root);
-  return ok || problem_set(problem, "%s: not a manifest of photonlab run", path);
+  return ok || problem_set(problem, "%s: not a manifest of this version of photonlab run", path);
 }
 
 static bool read_experiment(const char *directory, const struct manifest *manifest,
@@ -230,9 +232,10 @@ static bool read_experiment(const char *directory, const struct manifest *manife
                             struct problem *problem) {
   const char *path = arena_format(arena, "%s/%s.yaml", directory, manifest->name);
   if (!experiment_read(path, manifest->quality, arena, experiment, problem)) return false;
-  if (experiment->n_cells != manifest->n_cells)
-    return problem_set(problem, "%s: has %d cells, %d were run; it must not be edited", path,
-                       experiment->n_cells, manifest->n_cells);
+  if (XXH64(experiment->text.data, (size_t)experiment->text.length, 0) !=
+          manifest->experiment_sum ||
+      experiment->n_cells != manifest->n_cells)
+    return problem_set(problem, "%s: was changed after the run, run the experiment again", path);
   for (int c = 0; c < experiment->n_cells; c++) {
     experiment->cell[c].seed = manifest->seed[c];
     experiment->cell[c].runs = manifest->runs[c];

@@ -250,7 +250,9 @@ static bool write_manifest(const struct outputs *outputs, struct arena scratch,
   json_object_set_new(root, "compiler", json_string(photonlab_compiler));
   json_object_set_new(root, "flags", json_string(photonlab_flags));
   json_object_set_new(root, "cpu", json_string(cpu_name(&scratch)));
-  if (!set_hash(root, "log_hash", outputs->directory, "log.csv", scratch, problem) ||
+  if (!set_hash(root, "experiment_hash", outputs->directory,
+                arena_format(&scratch, "%s.yaml", plan->experiment->name), scratch, problem) ||
+      !set_hash(root, "log_hash", outputs->directory, "log.csv", scratch, problem) ||
       !set_hash(root, "probes_hash", outputs->directory, "probes.csv", scratch, problem) ||
       (runs_are_kept(plan->experiment) &&
        !set_hash(root, "runs_hash", outputs->directory, "runs.csv", scratch, problem))) {
