@@ -74,10 +74,10 @@ struct outlook outlook_new(const struct prediction *given, const struct series *
   if (v.why) return outlook;
   outlook.variance_se = v.rate_se * sqrt(many);
   double last = fabs(expected.bias[theory.n - 1]);
-  if (theory.unbiased || last == 0) return outlook;
+  if (theory.unbiased || (last == 0 && theory.bias_kind != BIAS_ENDS)) return outlook;
   struct bias_fit b = fit_bias(&theory, iteration, &v, v.expected, &scratch);
   if (b.measured) outlook.bias_se = b.rate_se_theory * sqrt(many);
-  outlook.bias = last;
+  if (last > 0) outlook.bias = last;
   return outlook;
 }
 

@@ -82,6 +82,27 @@ static void a_pilot_says_what_a_fit_without_closed_form_will(void **state) {
   assert_true(isinf(outlook_new(&shape, NULL, arena).variance_se));
 }
 
+// Where the bias ends at a shadow's edge the last iteration has none, but that its sum stays is to
+// be seen: what the fit of 208 runs then knows is known ahead.
+static void a_bias_that_ends_has_a_rate(void **state) {
+  (void)state;
+  struct experiment experiment;
+  struct prediction theory =
+      predict("ends",
+              "scene: scenes/plane-shadow-edge.pbrt\ndepth: 1\nprobes: [[45, 32]]\nradius: 0.65\n"
+              "photons: 250\niterations: 100\nruns: 208\n",
+              &experiment);
+  struct outlook outlook = outlook_new(&theory, NULL, arena);
+  assert_true(theory.bias_kind == BIAS_ENDS && isnan(outlook.bias));
+  assert_true(isfinite(outlook.bias_se));
+  run_into(&experiment, path_in("ends"));
+  struct results results = results_of(path_in("ends"));
+  struct bias_fit b;
+  struct variance_fit v = fit_variance(&theory, results.series[0].iteration, &arena);
+  b = fit_bias(&theory, results.series[0].iteration, &v, v.expected, &arena);
+  assert_true(relative(b.rate_se_theory, outlook_se(outlook.bias_se, 208)) < 0.15);
+}
+
 static void runs_and_errors_are_each_others_inverse(void **state) {
   (void)state;
   assert_true(outlook_runs(0.4, 0.004) == 10001);
@@ -94,6 +115,7 @@ int main(void) {
       cmocka_unit_test(standard_errors_are_theorys),
       cmocka_unit_test(a_fit_then_says_what_was_planned),
       cmocka_unit_test(a_pilot_says_what_a_fit_without_closed_form_will),
+      cmocka_unit_test(a_bias_that_ends_has_a_rate),
       cmocka_unit_test(runs_and_errors_are_each_others_inverse),
   };
   return cmocka_run_group_tests_name("outlook", tests, make_folder, remove_folder);
