@@ -228,6 +228,11 @@ static void light_step(void *data, uint64_t i, double *frame) {
 }
 
 static bool light_accepts(const struct scene *scene, bool footprint, struct problem *problem) {
+  if (scene_features(scene).media)
+    return problem_set(problem,
+                       "%s: integrator light connects surfaces only, and the scene has "
+                       "participating media: take path, sppm or probabilistic",
+                       scene->path);
   if (!scene->camera.type->find)
     return problem_set(problem,
                        "%s: integrator light cannot tell where a %s camera sees a point; use path",

@@ -65,8 +65,15 @@ static int64_t ppm_bytes(const void *data) {
   return local_bytes(((const struct ppm *)data)->local);
 }
 
-static const struct local *ppm_local(const void *data) {
-  return ((const struct ppm *)data)->local;
+static const struct local *ppm_local(const void *data) { return ((const struct ppm *)data)->local; }
+
+static bool ppm_accepts(const struct scene *scene, bool footprint, struct problem *problem) {
+  (void)footprint;
+  return !scene_features(scene).media ||
+         problem_set(problem,
+                     "%s: integrator ppm draws its points once, and in participating media where "
+                     "a ray ends is random: take sppm or probabilistic",
+                     scene->path);
 }
 
 const struct integrator_type integrator_ppm = {
@@ -77,6 +84,7 @@ const struct integrator_type integrator_ppm = {
     .photons = true,
     .independent = false,
     .one_eye_pass = true,
+    .accepts = ppm_accepts,
     .create = ppm_new,
     .begin = ppm_begin,
     .step = ppm_step,

@@ -112,6 +112,17 @@ static bool check_points(const struct cell *cell, const struct scene *scene,
                      scene->path, cell->integrator->name);
 }
 
+// In a volume a point's own radius would be that of a ball, which nothing here finds.
+static bool check_media(const struct cell *cell, const struct scene *scene,
+                        struct problem *problem) {
+  if ((cell->reference_radius->global && !cell->k) || !scene_features(scene).media) return true;
+  return problem_set(problem,
+                     "%s: the scene has participating media, and %s finds radii on surfaces only: "
+                     "say `radius`",
+                     scene->path,
+                     cell->k ? "`k` (the nearest photons)" : cell->reference_radius->name);
+}
+
 bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
                     struct problem *problem) {
   *estimator = (struct estimator){.kernel = cell->kernel,
@@ -123,7 +134,9 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
   if (cell->integrator->accepts && !cell->integrator->accepts(scene, cell->footprint, problem))
     return false;
   if (!cell->integrator->photons) return true;
-  if (!check_law(cell, problem) || !check_points(cell, scene, problem)) return false;
+  if (!check_law(cell, problem) || !check_points(cell, scene, problem) ||
+      !check_media(cell, scene, problem))
+    return false;
   if (cell->photons > MOST_PHOTONS)
     return problem_set(problem,
                        "photons: %" PRIu64 " at once do not fit into memory; more iterations of "

@@ -29,6 +29,8 @@ uint32_t build_begin_shape(struct scene_builder *builder, const struct shape_typ
                                                  .tangent = ROW_NONE,
                                                  .material = material,
                                                  .light = LIGHT_NONE,
+                                                 .inside = MEDIUM_NONE,
+                                                 .outside = MEDIUM_NONE,
                                                  .flip = flip};
   return scene->n_shapes++;
 }
@@ -105,6 +107,7 @@ static bool read_light(struct reader *reader, struct pending_light *pending, str
   // Several shapes may share the parameters of one AreaLightSource.
   for (int i = 0; i < pending->params.count; i++) pending->params.item[i].taken = false;
   light->type = pending->type;
+  light->medium = light->type->at_infinity ? MEDIUM_NONE : pending->medium;
   return pending->type->read(builder, &pending->params, light) && params_finish(&pending->params);
 }
 
@@ -157,7 +160,6 @@ static void count_names(struct reader *reader) {
   inventory->n_objects = (uint32_t)reader->objects.count;
   inventory->n_instances = (uint32_t)reader->instances.count;
   inventory->n_named_materials = (uint32_t)reader->material_names.count;
-  inventory->n_media = (uint32_t)reader->media.count;
 }
 
 bool scene_finish(struct reader *reader) {

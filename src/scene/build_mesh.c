@@ -134,6 +134,7 @@ bool scene_add_mesh(struct scene_builder *builder, struct params *params, const 
     shape = &scene->shape[scene->n_shapes - 1];
     shape->vertex = both.vertex, shape->normal = both.normal, shape->uv = both.uv;
     shape->tangent = both.tangent, shape->alpha = both.alpha;
+    shape->inside = both.inside, shape->outside = both.outside;
   }
   shape->type = &shape_bilinearmesh;
   add_patches(builder, mesh, shape);

@@ -28,8 +28,33 @@ static bool any_see_through(const struct scene *scene) {
   return false;
 }
 
+// What some ray may be in: media that are only defined do not count.
+struct media_use {
+  bool any, coloured;
+};
+
+static void use_medium(const struct scene *scene, uint32_t row, struct media_use *use) {
+  if (row == MEDIUM_NONE) return;
+  const struct medium *medium = &scene->medium[row];
+  use->any = true;
+  use->coloured = use->coloured || !medium->type->is_gray(medium);
+}
+
+static struct media_use media_use(const struct scene *scene) {
+  struct media_use use = {0};
+  if (scene->n_media == 0) return use;
+  use_medium(scene, scene->camera_medium, &use);
+  for (uint32_t i = 0; i < scene->n_lights; i++) use_medium(scene, scene->light[i].medium, &use);
+  for (uint32_t i = 0; i < scene->n_shapes; i++) {
+    use_medium(scene, scene->shape[i].inside, &use);
+    use_medium(scene, scene->shape[i].outside, &use);
+  }
+  return use;
+}
+
 struct features scene_features(const struct scene *scene) {
-  bool gray = shapes_are_gray(scene) && lights_are_gray(scene);
+  struct media_use media = media_use(scene);
+  bool gray = shapes_are_gray(scene) && lights_are_gray(scene) && !media.coloured;
   unsigned needs = material_needs(scene);
   struct features features = {
       .gray = gray,
@@ -38,8 +63,9 @@ struct features scene_features(const struct scene *scene) {
       .see_through = any_see_through(scene),
       .motion = scene->n_motions > 0 || scene->camera.animation.moves,
       .background = scene->n_infinite > 0,
+      .media = media.any,
   };
-  features.random_eye = features.motion || features.see_through ||
+  features.random_eye = features.motion || features.see_through || features.media ||
                         needs & (MATERIAL_RANDOM | MATERIAL_DELTA) || scene->camera.lens_radius > 0;
   return features;
 }

@@ -158,6 +158,45 @@ static void print_lights(const struct scene *scene, FILE *out) {
     fprintf(out, "  ... and %" PRIu32 " more\n", scene->n_lights - MAX_ROWS);
 }
 
+static void print_spectrum(FILE *out, const char *name, const double value[3]) {
+  if (value[0] == value[1] && value[1] == value[2])
+    fprintf(out, ", %s %g", name, value[0]);
+  else
+    fprintf(out, ", %s (%g %g %g)", name, value[0], value[1], value[2]);
+}
+
+static void print_medium(const struct scene *scene, uint32_t row, FILE *out) {
+  const struct medium *medium = &scene->medium[row];
+  uint32_t inside = 0, outside = 0, lights = 0;
+  struct medium_point at;
+  for (uint32_t k = 0; k < scene->n_shapes; k++) {
+    inside += scene->shape[k].inside == row;
+    outside += scene->shape[k].outside == row;
+  }
+  for (uint32_t k = 0; k < scene->n_lights; k++) lights += scene->light[k].medium == row;
+  medium->type->peak(medium, &at);
+  fprintf(out, "  %-12s %s%s", medium->name, medium->type->name,
+          medium->type->uniform ? "" : ", where it is densest");
+  print_spectrum(out, "sigma_a", at.sigma_a);
+  print_spectrum(out, "sigma_s", at.sigma_s);
+  if (at.emission[0] > 0 || at.emission[1] > 0 || at.emission[2] > 0)
+    print_spectrum(out, "emits", at.emission);
+  fprintf(out, ", g %g\n", medium->g);
+  if (medium->type->say) medium->type->say(medium, out);
+  fprintf(out,
+          "  %-12s inside of %" PRIu32 " and outside of %" PRIu32 " shapes, around %" PRIu32
+          " lights%s\n",
+          "", inside, outside, lights, scene->camera_medium == row ? " and the camera" : "");
+}
+
+static void print_media(const struct scene *scene, FILE *out) {
+  if (scene->n_media == 0) return;
+  fprintf(out, "media        %" PRIu32 " (lengths in scene units)\n", scene->n_media);
+  for (uint32_t k = 0; k < scene->n_media && k < MAX_ROWS; k++) print_medium(scene, k, out);
+  if (scene->n_media > MAX_ROWS)
+    fprintf(out, "  ... and %" PRIu32 " more\n", scene->n_media - MAX_ROWS);
+}
+
 static const char *applies(enum skip bit, const struct scene *scene,
                            const struct features *features) {
   switch (bit) {
@@ -182,6 +221,7 @@ static void print_features(const struct scene *scene, FILE *out) {
   print_feature(out, "motion", features.motion, "there is no time");
   print_feature(out, "see-through", features.see_through, "a ray ends where it hits");
   print_feature(out, "background", features.background, "a ray that hits nothing sees nothing");
+  print_feature(out, "media", features.media, "a ray goes on until it hits");
   print_feature(out, "random", features.random_materials, "no material is random at a point");
   print_feature(out, "random eye", features.random_eye, "a pixel's centre always sees the same");
   fprintf(out, "skips        (--no-skip=NAME switches one off; no result changes)\n");
@@ -205,7 +245,6 @@ void scene_info(const struct scene *scene, FILE *out) {
   print_materials(scene, out);
   print_textures(scene, out);
   print_lights(scene, out);
-  if (scene->inventory.n_media)
-    fprintf(out, "media        %" PRIu32 ", nothing is in them\n", scene->inventory.n_media);
+  print_media(scene, out);
   print_features(scene, out);
 }

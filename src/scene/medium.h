@@ -10,6 +10,7 @@
 #include "scene/ray.h"
 
 #include <stdint.h>
+#include <stdio.h>
 
 #define MEDIUM_NONE UINT32_MAX // a vacuum
 
@@ -38,6 +39,9 @@ struct medium_type {
   // *majorant in every channel. False: there is nothing of it from t on.
   bool (*piece)(const struct medium *, const struct ray *, double t, double *end, double *majorant);
   bool (*is_gray)(const struct medium *);
+  // For `photonlab info`: each value the largest anywhere; further lines of the type's own, or NULL.
+  void (*peak)(const struct medium *, struct medium_point *);
+  void (*say)(const struct medium *, FILE *);
 };
 
 // The phase function as a bsdf: value and pdf in 1/sr, of all light that is scattered; no normal

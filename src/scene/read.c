@@ -131,7 +131,8 @@ bool read_all(struct reader *reader, const char *path, const char *folder, struc
   struct scene *scene = reader->builder.scene;
   *scene =
       (struct scene){.path = arena_string(reader->builder.arena, path, (ptrdiff_t)strlen(path)),
-                     .hash = XXH64(text.data, (size_t)text.length, 0)};
+                     .hash = XXH64(text.data, (size_t)text.length, 0),
+                     .camera_medium = MEDIUM_NONE};
   struct reading file = {.path = scene->path};
   reader->lexer = lexer_begin(scene->path, text, reader->problem);
   reader->builder.folder = folder;

@@ -79,7 +79,8 @@ static void place_camera(struct reader *reader, struct camera *camera) {
 bool read_camera(struct reader *reader, struct call *call) {
   struct params *params = &call->params;
   struct camera *camera = &reader->builder.scene->camera;
-  if (!read_only_once(reader, call, &reader->camera) || !read_check_outside(reader, call))
+  if (!read_only_once(reader, call, &reader->camera) ||
+      !read_outside(reader, call, &reader->builder.scene->camera_medium))
     return false;
   camera->type = camera_find(call->type);
   if (!camera->type)

@@ -32,13 +32,14 @@ static const struct light_type *find_light(struct reader *reader, const struct c
 }
 
 static void add_pending_light(struct reader *reader, const struct light_type *type,
-                              const struct params *params, uint32_t shape) {
+                              const struct params *params, uint32_t shape, uint32_t medium) {
   *arena_push(&reader->lists, &reader->lights) =
       (struct pending_light){.type = type,
                              .params = *params,
                              .world_from_object = reader->now.world_from_object[START],
                              .reverse_orientation = reader->now.reverse_orientation,
-                             .shape = shape};
+                             .shape = shape,
+                             .medium = medium};
 }
 
 // `float alpha` or `texture alpha` of any shape. As in pbrt a constant of 1 or more is opaque, and
@@ -64,8 +65,11 @@ static void set_builder(struct scene_builder *builder, const struct attributes *
 static bool read_one_shape(struct reader *reader, const struct shape_type *type, bool flip,
                            const struct attributes *attributes, struct params *params) {
   struct scene_builder *builder = &reader->builder;
-  if (!read_check_media(reader, attributes, params)) return false;
+  uint32_t inside, outside;
+  if (!read_shape_media(reader, attributes, params, &inside, &outside)) return false;
   uint32_t row = build_begin_shape(builder, type, attributes->material, flip);
+  builder->scene->shape[row].inside = inside;
+  builder->scene->shape[row].outside = outside;
   read_alpha(reader, params, &builder->scene->shape[row]);
   read_leave_out(reader, params, "displacement");
   read_leave_out(reader, params, "displacement.edgelength");
@@ -136,14 +140,16 @@ bool read_shape(struct reader *reader, struct call *call) {
   }
   if (!read_place_shape(reader, type, now, &call->params, &row)) return false;
   for (; now->area_light && row < reader->builder.scene->n_shapes; row++) // a mesh may be two
-    add_pending_light(reader, now->area_light->type, &now->area_light->params, row);
+    add_pending_light(reader, now->area_light->type, &now->area_light->params, row,
+                      reader->builder.scene->shape[row].outside);
   return true;
 }
 
 bool read_light_source(struct reader *reader, struct call *call) {
   const struct light_type *type = find_light(reader, call, false);
-  if (!type || !read_check_outside(reader, call)) return false;
-  add_pending_light(reader, type, &call->params, 0);
+  uint32_t medium;
+  if (!type || !read_outside(reader, call, &medium)) return false;
+  add_pending_light(reader, type, &call->params, 0, medium);
   return true;
 }
 

@@ -83,7 +83,8 @@ struct pending_light {
   struct params params;
   struct transform world_from_object;
   bool reverse_orientation;
-  uint32_t shape; // area lights: its emitter's row
+  uint32_t shape;  // area lights: its emitter's row
+  uint32_t medium; // around it, as in the file
 };
 
 struct reader {
@@ -236,9 +237,11 @@ bool read_all_popped(struct reader *, ptrdiff_t outside);
 // Gives the call the defaults that Attribute set for its directive.
 void read_apply_defaults(const struct reader *, enum target, struct arena *, struct call *);
 
-// False: the shape has a medium on one side (problem set); the camera or light is within one.
-bool read_check_media(struct reader *, const struct attributes *, const struct params *);
-bool read_check_outside(struct reader *, const struct call *);
+// Rows of the media on a shape's sides; of what surrounds the camera or light. False: one is
+// unknown (problem set).
+bool read_shape_media(struct reader *, const struct attributes *, const struct params *,
+                      uint32_t *inside, uint32_t *outside);
+bool read_outside(struct reader *, const struct call *, uint32_t *row);
 
 // Says what was left out, once for all instances of an object.
 void read_note(const struct reader *, struct place, const char *directive, const char *what);

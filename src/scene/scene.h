@@ -164,6 +164,7 @@ struct light_type {
   const char *name, *about; // name as in `LightSource "name"` (area: `AreaLightSource`)
   bool area;                // comes with a shape
   bool delta;               // cannot be hit by a ray: no MIS
+  bool at_infinity;         // its light comes from without the scene: in a vacuum, as in pbrt
   // Called when the file is complete; for area lights the builder's `shape` is the emitter. Fills data
   // and power.
   bool (*read)(struct scene_builder *, struct params *, struct light *);
@@ -253,7 +254,7 @@ struct scene_settings {
 
 // What the file holds that the arrays no longer show, for `photonlab info`.
 struct inventory {
-  uint32_t n_files, n_objects, n_instances, n_named_materials, n_media, n_textures;
+  uint32_t n_files, n_objects, n_instances, n_named_materials, n_textures;
   uint32_t *textures; // by row of texture_types, floats and spectra
 };
 

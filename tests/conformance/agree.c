@@ -110,7 +110,7 @@ static long count_tests(void) {
   long rows = 0, scenes = sizeof own_scenes / sizeof *own_scenes;
   while (integrator_types[rows]) rows++;
   for (const struct conformance_scene *row = conformance_scenes; row->name; row++)
-    scenes += !row->refusal;
+    scenes += !row->media;
   return scenes * rows * (AREAS + 1);
 }
 
@@ -222,7 +222,7 @@ static void check_scene(const struct options *options, struct report *report,
   struct subject *subject = arena_new(&arena, struct subject, 1);
   struct members *members = arena_new(&arena, struct members, 1);
   if (!subject_load(setup->name, setup->path, &arena, subject, &problem)) {
-    refused(report, setup->name, NULL, &problem);
+    refused(report, setup->name, &problem);
     return;
   }
   subject->measure.footprint = true; // light tracing knows no centre of a pixel
@@ -257,7 +257,7 @@ void agree_check(const struct options *options, struct report *report, bool conf
   for (int s = 0; conformance && conformance_scenes[s].name; s++) {
     struct setup setup = in_room;
     setup.name = conformance_scenes[s].name;
-    if (!conformance_scenes[s].refusal) check_setup(options, report, setup, s, threshold);
+    if (!conformance_scenes[s].media) check_setup(options, report, setup, s, threshold);
   }
   for (size_t s = 0; s < sizeof own_scenes / sizeof *own_scenes; s++)
     if (own_scenes[s].in_full == options->full)

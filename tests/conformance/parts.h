@@ -14,7 +14,7 @@ struct doubt {
 
 struct conformance_scene {
   const char *name, *about;
-  const char *refusal; // what the reader says while the scene is beyond this version, else NULL
+  bool media;                // participating: path tracing only
   const struct doubt *doubt; // of the blocks it touches, or NULL
 };
 extern const struct conformance_scene conformance_scenes[]; // ends with a NULL name
@@ -35,8 +35,8 @@ void agree_check(const struct options *, struct report *, bool conformance);
 // Scenes by others: image means only, or the integrator against itself.
 void others_check(const struct options *, struct report *);
 
-// Prints the line of a scene that cannot be read; passes if `refusal` is what the reader says.
-void refused(struct report *, const char *name, const char *refusal, const struct problem *);
+// Prints the line of a scene that cannot be read.
+void refused(struct report *, const char *name, const struct problem *);
 
 bool selected(const struct options *, const char *name);
 

@@ -194,7 +194,7 @@ static void check_scene(const struct options *options, struct report *report,
   struct reference reference;
   const char *path = arena_format(&arena, "%s/%s.pbrt", options->conformance, row->name);
   if (!subject_load(row->name, path, &arena, subject, &problem))
-    refused(report, row->name, row->refusal, &problem);
+    refused(report, row->name, &problem);
   else if (!read_reference(options, row, &reference, &arena, &problem) ||
            !same_size(&subject->scene, &reference, &problem))
     report_line(report, FAILED, "%-24s %s", row->name, problem.text);

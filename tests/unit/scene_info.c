@@ -18,13 +18,16 @@ static void assert_says(const char *line) {
 
 static void what_a_scene_uses_is_listed(void **state) {
   (void)state;
-  info_of("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\n"
-          "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.5 .25 .25]\n"
-          "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-          "ObjectBegin \"o\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" ObjectEnd\n"
-          "ObjectInstance \"o\" ObjectInstance \"o\" ObjectInstance \"o\" LightSource \"point\"\n"
-          "NamedMaterial \"b\" Shape \"sphere\" \"float alpha\" .5\n"
-          "Texture \"f\" \"float\" \"constant\" Texture \"f\" \"spectrum\" \"constant\"\n");
+  info_of(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float scale\" .25\n"
+      "\"rgb sigma_a\" [.5 1 2] \"rgb Le\" [3 3 3] \"float g\" -.5 MediumInterface \"\" \"fog\"\n"
+      "Camera \"perspective\" WorldBegin MediumInterface \"fog\" \"\"\n"
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.5 .25 .25]\n"
+      "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+      "ObjectBegin \"o\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" ObjectEnd\n"
+      "ObjectInstance \"o\" ObjectInstance \"o\" ObjectInstance \"o\" LightSource \"point\"\n"
+      "NamedMaterial \"b\" Shape \"sphere\" \"float alpha\" .5\n"
+      "Texture \"f\" \"float\" \"constant\" Texture \"f\" \"spectrum\" \"constant\"\n");
   assert_says("1 scene file and all");
   assert_says("shapes       7 with 7 primitives");
   assert_says("  sphere       4 with 4 primitives");
@@ -33,7 +36,11 @@ static void what_a_scene_uses_is_listed(void **state) {
   assert_says("materials    2 named");
   assert_says("on 7 shapes, 1 black, 6 coloured");
   assert_says("textures     2\n  constant             2\n");
-  assert_says("media        1, nothing is in them");
+  assert_says(
+      "media        1 (lengths in scene units)\n"
+      "  fog          homogeneous, sigma_a (0.125 0.25 0.5), sigma_s 0.25, emits (0.375 0.75 "
+      "1.5), g -0.5\n"
+      "               inside of 7 and outside of 0 shapes, around 0 lights and the camera\n");
   assert_says("  colour       yes");
   assert_says("  see-through  yes");
   assert_says("  random eye   yes");
@@ -43,12 +50,13 @@ static void what_a_scene_uses_is_listed(void **state) {
 static void what_a_scene_does_not_need_is_said_so(void **state) {
   (void)state;
   info_of("WorldBegin LightSource \"point\" Shape \"sphere\"");
-  static const char *const names[] = {"colour", "motion", "see-through", "background", "random"};
-  for (int k = 0; k < 5; k++)
+  static const char *const names[] = {"colour",     "motion", "see-through",
+                                      "background", "media",  "random"};
+  for (int k = 0; k < 6; k++)
     assert_says(arena_format(&test_memory()->lists, "  %-12s no: ", names[k]));
   assert_says("  gray         yes");
   assert_null(strstr(said, "textures"));
-  assert_null(strstr(said, "media"));
+  assert_null(strstr(said, "sigma"));
 }
 
 int main(void) {

@@ -4,6 +4,7 @@
 #define LIGHT "LightSource \"point\"\n"
 #define SPHERE "Shape \"sphere\"\n"
 #define W "WorldBegin\n"
+#define HAZE "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" "
 #define FOG "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] "
 
@@ -99,14 +100,26 @@ static const struct {
     {W "Shape \"sphere\" \"rgb alpha\" [1 1 1]", 2, 16, "must be of type float"},
     {W "MakeNamedMedium \"a\"", 2, 1, "\"string type\" is missing"},
     {W "MakeNamedMedium \"a\" \"string type\" \"fog\"", 2, 21, "unknown medium \"fog\""},
-    {W "MakeNamedMedium \"a\" \"string type\" \"cloud\"\nMakeNamedMedium \"a\"", 3, 17,
-     "already defined"},
+    {W "MakeNamedMedium \"a\" \"string type\" \"homogenous\"", 2, 21,
+     "did you mean \"homogeneous\"?"},
+    {W "MakeNamedMedium \"a\" \"string type\" \"cloud\"", 2, 21,
+     "a medium \"cloud\" is not in this version"},
+    {W FOG "MakeNamedMedium \"fog\"", 3, 17, "already defined"},
+    {W HAZE "\"float g\" [1]", 2, 49, "\"g\" must be between -1 and 1"},
+    {W HAZE "\"float g\" [-1]", 2, 49, "\"g\" must be between -1 and 1"},
+    {W HAZE "\"float scale\" [-1]", 2, 49, "\"scale\" must not be negative"},
+    {W HAZE "\"rgb sigma_s\" [1 -1 1]", 2, 49, "\"sigma_s\" must not be negative"},
+    {W HAZE "\"rgb sigma_a\" [1e200 1 1] \"float scale\" 1e200", 2, 75, "too large"},
+    {W HAZE "\"float Lescale\" [-1]", 2, 49, "\"Lescale\" must not be negative"},
+    {W HAZE "\"float phase\" [1]", 2, 49, "phase"},
     {W FOG "MediumInterface \"fgo\" \"\"\n" SPHERE, 4, 1, "did you mean \"fog\"?"},
-    {W FOG "MediumInterface \"fog\" \"\"\n" SPHERE, 4, 1,
-     "participating media are not in this version, and \"fog\" is inside it"},
-    {W FOG "MediumInterface \"\" \"fog\"\n" SPHERE, 4, 1, "\"fog\" is outside it"},
-    {W FOG "MediumInterface \"fog\"\n" LIGHT, 4, 1, "\"fog\" is around it"},
-    {FOG "MediumInterface \"fog\"\n Camera \"perspective\"", 3, 2, "\"fog\" is around it"},
+    {W FOG "MediumInterface \"\" \"fig\"\n" SPHERE, 4, 1,
+     "Shape \"sphere\": unknown medium \"fig\"; did you mean \"fog\"?"},
+    {W FOG "MediumInterface \"fig\" \"fig\"\n" SPHERE, 4, 1, "unknown medium \"fig\""},
+    {W FOG "MediumInterface \"fig\"\n" LIGHT, 4, 1,
+     "LightSource \"point\": unknown medium \"fig\""},
+    {FOG "MediumInterface \"fig\"\n Camera \"perspective\"", 3, 2,
+     "Camera \"perspective\": unknown medium \"fig\""},
     // the order of things
     {W "TransformBegin", 2, 1, "this TransformBegin has no TransformEnd"},
     {W "ObjectBegin \"a\"\n AttributeBegin\n ObjectEnd", 4, 2,

@@ -74,6 +74,7 @@ const struct light_type light_distant = {
     .name = "distant",
     .about = "parallel light of perpendicular irradiance L",
     .delta = true,
+    .at_infinity = true,
     .read = read,
     .emit = emit,
     .sample = sample,

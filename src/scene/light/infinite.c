@@ -200,6 +200,7 @@ static bool is_gray(const struct light *light) {
 const struct light_type light_infinite = {
     .name = "infinite",
     .about = "radiance L from everywhere, or an image of it",
+    .at_infinity = true,
     .read = read,
     .emit = emit,
     .sample = sample,

@@ -1,6 +1,7 @@
 // Medium "homogeneous": the same everywhere, without end.
 //   `rgb sigma_a`, `rgb sigma_s`  default 1, times `float scale`; `float g`
-#include "scene/read.h"
+//   `spectrum Le` times `float Lescale`  emitted radiance, default none
+#include "scene/medium/coefficients.h"
 
 struct homogeneous {
   struct medium_point point;
@@ -8,13 +9,27 @@ struct homogeneous {
 };
 
 static bool read(struct scene_builder *builder, struct params *params, struct medium *medium) {
-  (void)builder, (void)medium;
-  return params_complain(params, "type", "participating media are not in this version");
+  struct homogeneous *homogeneous = arena_new(builder->arena, struct homogeneous, 1);
+  double emitted = params_float(params, "Lescale", 1);
+  if (!(emitted >= 0)) params_complain(params, "Lescale", "\"Lescale\" must not be negative");
+  if (!medium_read(builder, params, medium, &homogeneous->point)) return false;
+  for (int c = 0; c < 3; c++) {
+    double *emission = &homogeneous->point.emission[c];
+    *emission *= emitted;
+    if (!isfinite(*emission)) return params_complain(params, "Lescale", "it emits too much");
+  }
+  homogeneous->majorant = medium_largest(&homogeneous->point);
+  medium->data = homogeneous;
+  return true;
 }
 
 static void at(const struct medium *medium, struct vec p, struct medium_point *point) {
   (void)p;
   *point = ((const struct homogeneous *)medium->data)->point;
+}
+
+static void peak(const struct medium *medium, struct medium_point *point) {
+  at(medium, (struct vec){0}, point);
 }
 
 static bool piece(const struct medium *medium, const struct ray *ray, double t, double *end,
@@ -26,11 +41,7 @@ static bool piece(const struct medium *medium, const struct ray *ray, double t, 
 }
 
 static bool is_gray(const struct medium *medium) {
-  const struct medium_point *point = &((const struct homogeneous *)medium->data)->point;
-  const double *value[] = {point->sigma_a, point->sigma_s, point->emission};
-  for (int k = 0; k < 3; k++)
-    if (value[k][0] != value[k][1] || value[k][1] != value[k][2]) return false;
-  return true;
+  return medium_point_is_gray(&((const struct homogeneous *)medium->data)->point);
 }
 
 const struct medium_type medium_homogeneous = {
@@ -41,4 +52,5 @@ const struct medium_type medium_homogeneous = {
     .at = at,
     .piece = piece,
     .is_gray = is_gray,
+    .peak = peak,
 };
