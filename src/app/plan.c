@@ -20,32 +20,71 @@ struct planner {
 };
 
 static void print_head(const struct planner *planner) {
-  printf(
-      "standard errors of rates with the runs of the file, and what %g takes (s: on one thread; -: "
-      "nothing was seen)\n\n",
-      planner->wanted_se);
-  printf("%4s  %-22s %-13s %7s %9s  %-9s %8s %9s %12s %9s %12s\n", "cell", "scene", "integrator",
-         "alpha", "probe", "quantity", "runs", "se", "runs needed", "s", "reference se");
+  printf("standard errors of rates with the runs of the file, and what %g takes (s: on one thread; "
+         "-: nothing was seen):\n"
+         "more runs, or with those of the file about so many iterations or so large a radius, if "
+         "its discs stay "
+         "clear of edges\n\n",
+         planner->wanted_se);
+  printf("%4s  %-22s %-13s %7s %9s  %-9s %8s %9s %12s %9s  %-17s %12s\n", "cell", "scene",
+         "integrator", "alpha", "probe", "quantity", "runs", "se", "runs needed", "s", "or",
+         "reference se");
 }
 
 // Theory 4.7: an error of 3 % of the smallest bias moves a rate by half a hundredth.
 static double reference_se(const struct outlook *outlook) { return 0.03 * outlook->bias; }
 
+// What else reaches the error wanted. A variance's rate is known to ((K - 1) N)^-1/2; a bias's to
+// the noise over the bias, r^-1 over r^q, while more iterations help it little (theory 4.4).
+static void print_instead(const struct planner *planner, const struct cell *cell, double se,
+                          double power, char text[32]) {
+  double ratio = se / planner->wanted_se;
+  if (!(ratio > 1) || !isfinite(ratio)) return;
+  if (isnan(power))
+    snprintf(text, 32, "iterations %.0f", ceil((double)cell->iterations * ratio * ratio));
+  else if (power >= 0 && cell_radius_is_known(cell))
+    snprintf(text, 32, "radius %.3g", cell->radius * pow(ratio, 1 / (1 + power)));
+}
+
+// The power of the radius that a bias goes with; below zero: none.
+static double bias_power(const struct prediction *theory) {
+  switch (theory->bias_kind) {
+  case BIAS_SMOOTH:
+    return 2;
+  case BIAS_FOURTH:
+    return 4;
+  case BIAS_SIDE:
+    return 1;
+  case BIAS_EDGE:
+    return 0;
+  default:
+    return -1;
+  }
+}
+
+// What a row is of: a quantity's standard error of one run.
+struct planned {
+  const char *quantity;
+  double one_run, power; // power: NAN for a variance
+  double reference;      // its standard error; NAN: no matter
+};
+
 static double print_row(const struct planner *planner, const struct cell *cell, struct pixel at,
-                        const char *quantity, double one_run, double run_s, double reference) {
-  char probe[32], needed[32] = "-", seconds[32] = "-", known[32] = "-";
-  double runs = outlook_runs(one_run, planner->wanted_se),
-         se = outlook_se(one_run, (double)cell->runs);
+                        struct planned planned, double run_s) {
+  char probe[32], needed[32] = "-", seconds[32] = "-", known[32] = "-", instead[32] = "";
+  double runs = outlook_runs(planned.one_run, planner->wanted_se),
+         se = outlook_se(planned.one_run, (double)cell->runs);
   snprintf(probe, sizeof probe, "%d,%d", at.x, at.y);
   if (isfinite(se)) snprintf(known, sizeof known, "%.4f", se);
   if (isfinite(runs)) {
     snprintf(needed, sizeof needed, "%.0f", runs);
     snprintf(seconds, sizeof seconds, "%.3g", runs * run_s);
   }
-  printf("%4d  %-22s %-13s %7.4f %9s  %-9s %8.0f %9s %12s %9s ", cell->number, cell->scene,
-         cell->integrator->name, cell->alpha, probe, quantity, (double)cell->runs, known, needed,
-         seconds);
-  isfinite(reference) ? printf("%12.2g\n", reference) : printf("%12s\n", "");
+  print_instead(planner, cell, se, planned.power, instead);
+  printf("%4d  %-22s %-13s %7.4f %9s  %-9s %8.0f %9s %12s %9s  %-17s ", cell->number, cell->scene,
+         cell->integrator->name, cell->alpha, probe, planned.quantity, (double)cell->runs, known,
+         needed, seconds, instead);
+  isfinite(planned.reference) ? printf("%12.2g\n", planned.reference) : printf("%12s\n", "");
   return isfinite(runs) ? runs : 0;
 }
 
@@ -58,10 +97,12 @@ static double print_series(const struct planner *planner, const struct group_pla
   struct outlook outlook = outlook_new(theory, series->iteration ? series : NULL, scratch);
   double most = 0;
   if (cell->quantities & QUANTITY_VARIANCE)
-    most = print_row(planner, cell, at, "variance", outlook.variance_se, run_s, NAN);
+    most = print_row(planner, cell, at, (struct planned){"variance", outlook.variance_se, NAN, NAN},
+                     run_s);
   if (!(cell->quantities & QUANTITY_BIAS) || isnan(outlook.bias_se)) return most;
   double reference = theory->closed_form ? NAN : reference_se(&outlook);
-  double runs = print_row(planner, cell, at, "bias", outlook.bias_se, run_s, reference);
+  struct planned bias = {"bias", outlook.bias_se, bias_power(theory), reference};
+  double runs = print_row(planner, cell, at, bias, run_s);
   return runs > most ? runs : most;
 }
 

@@ -51,5 +51,18 @@ check 'a plan has a line for each rate' test "$(grep -c ' variance \| bias ' <<<
 check 'it is of the error asked for' grep -q 'to 0.02' <<<"$plan"
 check_fails 'an error of zero cannot be planned for' \
   "$photonlab" plan "$scratch/traced.yaml" --until 'rate_se <= 0'
+# The other ways to the same error, taken at their word: to 10 %, where discs hold little of the beam.
+planned() { # planned SE RADIUS ITERATIONS: the plan's rows of such an experiment
+  printf '%s\n' 'scene: scenes/plane-quadratic-beam.pbrt' 'depth: 1' 'photons: 4000' 'runs: 40' \
+    'probes: [[32, 32]]' "radius: $2" "iterations: $3" >"$scratch/beam.yaml"
+  "$photonlab" plan "$scratch/beam.yaml" --until "rate_se <= $1" | grep '^ *0 '
+}
+instead() { planned "$2" 0.15 200 | awk -v quantity="$1" '$6 == quantity { print $12 }'; }
+reaches() { awk -v quantity="$1" -v se="$2" '$6 == quantity { n++; ok = ($8 / se - 1) ^ 2 < 0.01 }
+  { print } END { exit !(n == 1 && ok) }'; }
+check 'so many iterations instead reach a rate of the variance' \
+  reaches variance 0.01 < <(planned 0.01 0.15 "$(instead variance 0.01)")
+check 'so large a radius instead reaches a rate of the bias' \
+  reaches bias 0.05 < <(planned 0.05 "$(instead bias 0.05)" 200)
 check 'a plan leaves nothing' test ! -e results/traced
 done_testing
