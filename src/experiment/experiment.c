@@ -48,7 +48,9 @@ const struct experiment_key experiment_keys[] = {
      false, key_read_discs},
     {"reference", "analytic",
      "bias against: analytic, none, richardson (the same photons at half the radius) or "
-     "{integrator: path, se: 0.001}; se: 3% is of the smallest bias to be fitted",
+     "{integrator: path, se: 0.001}; se: 3% is of the smallest bias to be fitted; a closed form, "
+     "where "
+     "there is one, comes before none and path",
      false, key_read_reference},
     {"parts", "(one)", "list of mappings, each an experiment that inherits the keys above it",
      false, NULL},
