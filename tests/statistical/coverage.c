@@ -8,11 +8,12 @@
 #include "tests/unit/run_fixture.h"
 
 #include "analysis/fit.h"
+#include "tests/p_values.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { MOST = 1000, NAMES = 3 };
+enum { MOST = 1000, NAMES = 4 };
 
 struct size {
   int experiments, fewest, most;
@@ -23,7 +24,7 @@ static struct size size_asked(void) {
   return is_long ? (struct size){1000, 928, 970} : (struct size){400, 364, 393};
 }
 
-static const char *const names[NAMES] = {"rate", "coefficient", "independence"};
+static const char *const names[NAMES] = {"rate", "coefficient", "independence", "lack-of-fit"};
 
 struct tally {
   int rates, covered;
@@ -60,22 +61,6 @@ static void run_one(int number, struct tally tally[2]) {
   arena = kept;
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-// The largest distance between the values' distribution and the uniform one, times n^1/2.
-static double kolmogorov(double *p, int n) {
-  double largest = 0;
-  qsort(p, (size_t)n, sizeof *p, ascending);
-  for (int k = 0; k < n; k++) {
-    double above = (k + 1.0) / n - p[k], below = p[k] - (double)k / n;
-    largest = fmax(largest, fmax(above, below));
-  }
-  return largest * sqrt(n);
-}
-
 static void intervals_of_real_experiments_cover(void **state) {
   (void)state;
   struct size size = size_asked();
@@ -85,7 +70,7 @@ static void intervals_of_real_experiments_cover(void **state) {
   for (int r = 0; r < 2; r++) {
     printf("%s: %d of %d covered", r ? "bias" : "variance", tally[r].covered, size.experiments);
     for (int k = 0; k < NAMES; k++) {
-      double distance = kolmogorov(tally[r].p[k], tally[r].n_p[k]);
+      double distance = p_kolmogorov(tally[r].p[k], tally[r].n_p[k]);
       printf(", %s %.2f", names[k], distance);
       assert_int_equal(tally[r].n_p[k], size.experiments);
       assert_true(distance < limit);
