@@ -4,26 +4,53 @@
 #include <float.h>
 #include <string.h>
 
+static const double last_cell = 0x1p62;
+
 // Deterministic 64-bit mixing of a cell's coordinates (the finaliser of splitmix64).
 static uint32_t hash_cell(struct grid_cell cell) {
-  uint64_t h = (uint64_t)(uint32_t)cell.x | (uint64_t)(uint32_t)cell.y << 32;
-  h ^= (uint64_t)(uint32_t)cell.z * UINT64_C(0x9e3779b97f4a7c15);
+  uint64_t h = (uint64_t)cell.x | (uint64_t)cell.y << 32;
+  h ^= (uint64_t)cell.z * UINT64_C(0x9e3779b97f4a7c15);
   h = (h ^ h >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
   h = (h ^ h >> 27) * UINT64_C(0x94d049bb133111eb);
   return (uint32_t)(h >> 32);
 }
 
-// Floor, not truncation: cells below zero are as wide as the others. (Without SSE4.1 floor is a call;
-// the numbers fit into 32 bits, see grid_radius_is_resolved.)
-static int32_t cell_coordinate(double x, double inverse_edge) {
+// Floor, not truncation: cells below zero are as wide as the others. (Without SSE4.1 floor is a
+// call.) In a medium without end photons may lie anywhere: beyond 2^62 cells, where doubles are
+// farther apart than cells are wide, all are in the last one.
+static int64_t cell_coordinate(double x, double inverse_edge) {
   double scaled = x * inverse_edge;
-  int32_t truncated = (int32_t)scaled;
-  return truncated - (scaled < truncated);
+  scaled = scaled < last_cell ? scaled : last_cell;
+  scaled = scaled > -last_cell ? scaled : -last_cell;
+  int64_t truncated = (int64_t)scaled;
+  return truncated - (scaled < (double)truncated);
+}
+
+// Modulo 2^32, see struct grid_cell.
+static struct grid_cell cell_numbered(int64_t x, int64_t y, int64_t z) {
+  return (struct grid_cell){(uint32_t)x, (uint32_t)y, (uint32_t)z};
 }
 
 static struct grid_cell cell_of(struct vec p, double inverse_edge) {
-  return (struct grid_cell){cell_coordinate(p.x, inverse_edge), cell_coordinate(p.y, inverse_edge),
-                            cell_coordinate(p.z, inverse_edge)};
+  return cell_numbered(cell_coordinate(p.x, inverse_edge), cell_coordinate(p.y, inverse_edge),
+                       cell_coordinate(p.z, inverse_edge));
+}
+
+// The cells of a ball, from lo to hi in each coordinate. A point within r of p differs by at most r
+// in each, rounding included: d2 < r2 implies |dx| <= r (1 + 2 eps), so the corners are taken from
+// a box that is wider than that.
+struct cells {
+  int64_t lo[3], hi[3];
+};
+
+static struct cells cells_around(struct vec p, double r, double inverse_edge) {
+  double reach = r * (1 + 4 * DBL_EPSILON), at[3] = {p.x, p.y, p.z};
+  struct cells cells;
+  for (int k = 0; k < 3; k++) {
+    cells.lo[k] = cell_coordinate(at[k] - reach, inverse_edge);
+    cells.hi[k] = cell_coordinate(at[k] + reach, inverse_edge);
+  }
+  return cells;
 }
 
 bool grid_radius_is_resolved(struct box bounds, double r, struct problem *problem) {
@@ -36,7 +63,7 @@ bool grid_radius_is_resolved(struct box bounds, double r, struct problem *proble
   // Below the normal floats their spacing no longer falls with the coordinates.
   double spacing = FLT_EPSILON * (largest < (double)FLT_MIN ? (double)FLT_MIN : largest);
   double least = 100 * spacing;
-  if (r >= least && largest / r < INT32_MAX / 2) return true;
+  if (r >= least) return true;
   return problem_set(problem,
                      "radius %g is too small for a scene with coordinates up to %g: the vertices' "
                      "rounding would show in the density below %g",
@@ -101,18 +128,13 @@ static int find_in_cell(const struct grid *grid, struct grid_cell cell, struct v
 
 int grid_find(const struct grid *grid, struct vec p, double r, uint32_t *photon,
               double *distance2) {
-  // A photon within r differs by at most r in each coordinate, rounding included: d2 < r2 implies
-  // |dx| <= r (1 + 2 eps), so the corners are taken from a box that is wider than that.
-  double reach = r * (1 + 4 * DBL_EPSILON), k = grid->inverse_edge;
-  struct grid_cell lo = cell_of(vec(p.x - reach, p.y - reach, p.z - reach), k);
-  struct grid_cell hi = cell_of(vec(p.x + reach, p.y + reach, p.z + reach), k);
+  struct cells near = cells_around(p, r, grid->inverse_edge);
   int found = 0;
   if (grid->count == 0) return 0;
-  struct grid_cell cell;
-  for (cell.z = lo.z; cell.z <= hi.z; cell.z++)
-    for (cell.y = lo.y; cell.y <= hi.y; cell.y++)
-      for (cell.x = lo.x; cell.x <= hi.x; cell.x++)
-        found = find_in_cell(grid, cell, p, r * r, found, photon, distance2);
+  for (int64_t z = near.lo[2]; z <= near.hi[2]; z++)
+    for (int64_t y = near.lo[1]; y <= near.hi[1]; y++)
+      for (int64_t x = near.lo[0]; x <= near.hi[0]; x++)
+        found = find_in_cell(grid, cell_numbered(x, y, z), p, r * r, found, photon, distance2);
   return found;
 }
 
@@ -121,15 +143,12 @@ enum { SEEN_BITS = 64 * sizeof((struct grid_seen *)0)->bit / sizeof(uint64_t) };
 void grid_seen_mark(struct grid_seen *seen, const struct vec *p, int n, double r) {
   memset(seen->bit, 0, sizeof seen->bit);
   seen->inverse_edge = 1 / r;
-  double reach = r * (1 + 4 * DBL_EPSILON);
   for (int j = 0; j < n; j++) {
-    struct grid_cell lo = cell_of(vec(p[j].x - reach, p[j].y - reach, p[j].z - reach), 1 / r);
-    struct grid_cell hi = cell_of(vec(p[j].x + reach, p[j].y + reach, p[j].z + reach), 1 / r);
-    struct grid_cell cell;
-    for (cell.z = lo.z; cell.z <= hi.z; cell.z++)
-      for (cell.y = lo.y; cell.y <= hi.y; cell.y++)
-        for (cell.x = lo.x; cell.x <= hi.x; cell.x++) {
-          uint32_t bit = hash_cell(cell) % SEEN_BITS;
+    struct cells near = cells_around(p[j], r, seen->inverse_edge);
+    for (int64_t z = near.lo[2]; z <= near.hi[2]; z++)
+      for (int64_t y = near.lo[1]; y <= near.hi[1]; y++)
+        for (int64_t x = near.lo[0]; x <= near.hi[0]; x++) {
+          uint32_t bit = hash_cell(cell_numbered(x, y, z)) % SEEN_BITS;
           seen->bit[bit / 64] |= UINT64_C(1) << bit % 64;
         }
   }

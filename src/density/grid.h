@@ -10,8 +10,10 @@
 #include "scene/scene.h"
 #include "walk/photons.h"
 
+// Numbers of cells modulo 2^32: of two cells with the same numbers one is too far from any point to
+// matter, and the distance says which. So any coordinate has a cell.
 struct grid_cell {
-  int32_t x, y, z;
+  uint32_t x, y, z;
 };
 
 struct grid {
@@ -26,9 +28,8 @@ struct grid {
   uint32_t *bucket;       // scratch: by photon
 };
 
-// Whether cell numbers of a scene within these bounds fit at radius r (32 bits a coordinate), and
-// whether r is resolved at all: at least 100 times the spacing of floats at the largest coordinate
-// (theory 7), or the density error of the vertices' rounding shows.
+// Whether r is resolved in a scene within these bounds: at least 100 times the spacing of floats at
+// the largest coordinate (theory 7), or the density error of the vertices' rounding shows.
 bool grid_radius_is_resolved(struct box bounds, double r, struct problem *);
 
 // Sorts the photons; grows in the arena.

@@ -46,8 +46,8 @@ static int brute_force(const struct photons *photons, struct vec p, double r, un
   return found;
 }
 
-static void check_cloud(const char *name, int n, double half, double r) {
-  struct photons photons = photons_cloud(name, n, half, r);
+static void check_photons(struct photons photons, double r) {
+  int n = (int)photons.count;
   struct grid grid = {0};
   grid_build(&grid, &photons, r, &arena);
   uint32_t *photon = arena_new(&arena, uint32_t, n);
@@ -57,7 +57,8 @@ static void check_cloud(const char *name, int n, double half, double r) {
   for (int q = 0; q < 200; q++) {
     struct vec p = photons.position[(q * 37) % n];
     if (q % 2) p = vec_add(p, vec(0.3 * r, -0.7 * r, 0.11 * r));
-    int expected = brute_force(&photons, p, r, in), found = grid_find(&grid, p, r, photon, distance2);
+    int expected = brute_force(&photons, p, r, in),
+        found = grid_find(&grid, p, r, photon, distance2);
     assert_int_equal(found, expected);
     total += found;
     for (int k = 0; k < found; k++) {
@@ -68,6 +69,10 @@ static void check_cloud(const char *name, int n, double half, double r) {
   assert_true(total > 200); // the queries are not about nothing
 }
 
+static void check_cloud(const char *name, int n, double half, double r) {
+  check_photons(photons_cloud(name, n, half, r), r);
+}
+
 static void finds_what_brute_force_finds(void **state) {
   (void)state;
   check_cloud("dense", 3000, 1, 0.25);
@@ -75,6 +80,42 @@ static void finds_what_brute_force_finds(void **state) {
   check_cloud("one cell", 500, 0.2, 0.5);
   check_cloud("small radius far from zero scale", 3000, 1e-6, 1e-7);
   check_cloud("huge", 3000, 1e6, 1e5);
+}
+
+// In a medium without end photons go anywhere. A third of them is 2^32 cells away, so that their
+// cells have the same numbers; beyond 2^53 cells doubles are farther apart than cells, beyond 2^62
+// all are in one cell, and where squares overflow nothing is near.
+static void photons_may_lie_anywhere(void **state) {
+  (void)state;
+  static const double far[] = {0x1p31, 0x1p32, 0x1p45, 0x1p52, 0x1p54, 0x1p62, 0x1p63, 1e30, 1e307};
+  double r = 0.25;
+  for (size_t k = 0; k < sizeof far / sizeof *far; k++) {
+    struct photons photons = photons_cloud("anywhere", 999, 1, r);
+    for (int64_t j = 0; j < photons.count; j++) {
+      struct vec *p = &photons.position[j];
+      double x = (j % 2 ? 1 : -1) * far[k] * r + (j % 3 == 1 ? 0x1p32 * r : 0);
+      *p = vec_add(*p, j % 5 ? vec(x, 0, x) : vec(0, -x, 0));
+    }
+    check_photons(photons, r);
+  }
+}
+
+// The filter keeps all that a query may find there, and not everything.
+static void what_is_seen_far_away_is_kept(void **state) {
+  (void)state;
+  double r = 0.25;
+  struct photons photons = photons_cloud("kept", 3000, 10, r);
+  for (int64_t j = 0; j < photons.count; j++) photons.position[j].y -= 0x1p40 * r;
+  struct grid_seen seen;
+  grid_seen_mark(&seen, &photons.position[7], 1, r);
+  int kept = 0;
+  for (int64_t j = 0; j < photons.count; j++) {
+    struct vec d = vec_sub(photons.position[j], photons.position[7]);
+    bool keep = grid_seen_keep(&seen, photons.position[j]);
+    assert_true(keep || !(vec_dot(d, d) < r * r));
+    kept += keep;
+  }
+  assert_true(kept < 30);
 }
 
 static void order_does_not_depend_on_photons_elsewhere(void **state) {
@@ -163,7 +204,8 @@ static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
   for (int k = 0; k < n_kernels; k++) {
     // Two discs share the photons; the smaller one must not see those beyond it.
     double c = kernels[k].constants(2).c;
-    struct disc disc[2] = {disc_of(&kernels[k], c, r, 1000), disc_of(&kernels[k], c, 0.2, 1000)};
+    struct disc disc[2] = {disc_of(&kernels[k], c, r, 1000),
+                           disc_of(&kernels[k], c, 0.2, 1000)};
     double out[2] = {0}, expected[2] = {0};
     gather_point(&gather, &photons, &grid, &point, 64, disc, 2, NULL, out, 1, &arena);
     for (int64_t j = 0; j < photons.count; j++) {
@@ -185,6 +227,8 @@ int main(void) {
   arena = arena_reserve();
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(finds_what_brute_force_finds),
+      cmocka_unit_test(photons_may_lie_anywhere),
+      cmocka_unit_test(what_is_seen_far_away_is_kept),
       cmocka_unit_test(order_does_not_depend_on_photons_elsewhere),
       cmocka_unit_test(photons_at_exactly_r_are_outside_and_at_zero_inside),
       cmocka_unit_test(no_photons_are_no_problem),
