@@ -166,7 +166,7 @@ static double runs_merged(double unused, double level) {
 
 static double photons_divided_by(double unused, double level) {
   (void)unused;
-  double scale = disc_of(NULL, 1, 0.5, (uint64_t)level + 1).scale;
+  double scale = disc_of(NULL, 1, 0.5, 2, (uint64_t)level + 1).scale;
   return fabs(scale * (level + 1) / 4 - 1);
 }
 

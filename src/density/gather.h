@@ -4,6 +4,16 @@
 // its direction: from the side of the eye where only reflection is, from the other where light is
 // transmitted. No other test. Where the shading normal is not the geometric one, the flux is
 // corrected (bsdf_photon_factor), so that the limit is what an eye path measures.
+//
+// What it is a density of. On surfaces (d = 2) photons carry flux [W]: the density is irradiance
+// [W / unit^2], f [1/sr] the BSDF. In media (d = 3) every collision leaves a photon, scattered or
+// absorbed, that carries flux over sigma_t of its own place and channel [W x unit]: the density is
+// fluence rate [W / unit^2], f [1/sr] the phase function, and point->weight holds sigma_s of the
+// eye point [1 / unit]. So the kernel averages fluence alone, which is smooth also where the medium
+// is not; what the medium scatters is what it scatters at the eye point. A ball that reaches into a
+// wall, or out of the medium, lacks photons there (theory 1.5): near walls the estimate is too low,
+// in a layer as thick as r, so that a pixel that sees a wall through a medium has a bias of order
+// r.
 #ifndef DENSITY_GATHER_H
 #define DENSITY_GATHER_H
 
@@ -12,17 +22,18 @@
 #include "density/knn.h"
 #include "walk/eye.h"
 
-// One estimator at one point and iteration.
+// One estimator at one point and iteration; in media a ball.
 struct disc {
   const struct kernel *kernel;
   double r;     // support
-  double scale; // c / (r^2 n_emitted)
+  double scale; // c / (r^d n_emitted)
 };
 
-// c = psi(0), kernel->constants(2).c
-static inline struct disc disc_of(const struct kernel *kernel, double c, double r,
+// c = psi(0) in d dimensions, kernel->constants(d).c; d = 2: a disc, 3: a ball.
+static inline struct disc disc_of(const struct kernel *kernel, double c, double r, int d,
                                   uint64_t n_emitted) {
-  return (struct disc){kernel, r, c / (r * r * (double)n_emitted)};
+  double measure = d == 3 ? r * r * r : r * r;
+  return (struct disc){kernel, r, c / (measure * (double)n_emitted)};
 }
 
 // Scratch for queries on grids of up to `capacity` photons.

@@ -1,5 +1,7 @@
 #include "estimate/local.h"
 
+#include "numeric/elementary.h"
+
 #include <omp.h>
 #include <string.h>
 
@@ -9,7 +11,7 @@ enum { POINTS_AT_ONCE = 64 }; // that a thread gathers before it takes more
 struct local_worker {
   struct arena *arena;
   struct walk *walk;
-  struct photons photons;
+  struct photons photons[POINT_KINDS];
   struct gather gather;
   struct disc *disc; // [n_estimators]
   int64_t *found;    // [n_estimators]
@@ -45,8 +47,12 @@ struct local *local_new(const struct measurement *measure, struct arena *arena) 
   struct local *local = arena_new(arena, struct local, 1);
   long size = (long)measure->n_points * measure->n_estimators;
   local->map = photon_map_new(measure, arena);
-  local->r2 = arena_new(arena, double, size);
-  local->n = arena_new(arena, double, size);
+  for (int kind = 0; kind < measurement_kinds(measure); kind++) {
+    struct local_field *field = &local->field[kind];
+    field->d = point_dimension[kind];
+    field->rd = arena_new(arena, double, size);
+    field->n = arena_new(arena, double, size);
+  }
   local->level = arena_new(arena, unsigned char, measure->n_points);
   local->fixed = !measure->footprint && !measure->features.random_eye &&
                  !(measure->skip_off & SKIP_STATIC_EYE);
@@ -54,13 +60,20 @@ struct local *local_new(const struct measurement *measure, struct arena *arena) 
   return local;
 }
 
+static double power(double r, int d) { return d == 3 ? r * r * r : r * r; }
+
+static double root(double rd, int d) { return d == 3 ? num_cbrt(rd) : sqrt(rd); }
+
 void local_begin(struct local *local, uint64_t run) {
   const struct measurement *measure = local->map->measure;
   local->map->run = run;
-  for (long k = 0; k < (long)measure->n_points * measure->n_estimators; k++) {
-    double r1 = measure->estimator[k % measure->n_estimators].r1;
-    local->r2[k] = r1 * r1;
-    local->n[k] = 0;
+  for (int kind = 0; kind < measurement_kinds(measure); kind++) {
+    struct local_field *field = &local->field[kind];
+    for (long k = 0; k < (long)measure->n_points * measure->n_estimators; k++) {
+      const struct estimator *estimator = &measure->estimator[k % measure->n_estimators];
+      field->rd[k] = power(estimator_r1(estimator, (enum point_kind)kind), field->d);
+      field->n[k] = 0;
+    }
   }
 }
 
@@ -94,46 +107,69 @@ void local_see(struct local *local, uint64_t i) {
   local->seen = true;
 }
 
-static double largest_r1(const struct measurement *measure) {
+static struct local_field *field_of(struct local *local, int point) {
+  return &local->field[eye_point_kind(&local->map->point[point])];
+}
+
+double local_radius(const struct local *local, int point, int estimator) {
+  const struct local_field *field = &local->field[eye_point_kind(&local->map->point[point])];
+  return root(field->rd[(long)point * local->map->measure->n_estimators + estimator], field->d);
+}
+
+static double largest_r1(const struct measurement *measure, enum point_kind kind) {
   double r1 = 0;
-  for (int e = 0; e < measure->n_estimators; e++)
-    r1 = r1 < measure->estimator[e].r1 ? measure->estimator[e].r1 : r1;
+  for (int e = 0; e < measure->n_estimators; e++) {
+    double own = estimator_r1(&measure->estimator[e], kind);
+    r1 = r1 < own ? own : r1;
+  }
   return r1;
 }
 
 static double largest_radius(const struct local *local, int point) {
-  int n = local->map->measure->n_estimators;
-  double r2 = 0;
-  for (int e = 0; e < n; e++) {
-    double own = local->r2[(long)point * n + e];
-    r2 = r2 < own ? own : r2;
+  double r = 0;
+  for (int e = 0; e < local->map->measure->n_estimators; e++) {
+    double own = local_radius(local, point, e);
+    r = r < own ? own : r;
   }
-  return sqrt(r2);
+  return r;
 }
 
-// The level of each point that scatters light; returns the largest of their radii, 0: there is
-// none.
-static double set_levels(struct local *local) {
+// The level of each point that scatters light; largest[kind] of their radii, 0: there is none.
+static void set_levels(struct local *local, double largest[POINT_KINDS]) {
   const struct measurement *measure = local->map->measure;
-  double r1 = largest_r1(measure), largest = 0;
-  memset(local->used, 0, sizeof local->used);
+  double r1[POINT_KINDS];
+  for (int kind = 0; kind < POINT_KINDS; kind++) {
+    largest[kind] = 0;
+    r1[kind] = largest_r1(measure, (enum point_kind)kind);
+    memset(local->field[kind].used, 0, sizeof local->field[kind].used);
+  }
   for (int j = 0; j < measure->n_points; j++) {
-    if (!local->map->point[j].bsdf.type) continue;
-    double r = largest_radius(local, j), edge = r1;
+    const struct eye_point *point = &local->map->point[j];
+    if (!point->bsdf.type) continue;
+    enum point_kind kind = eye_point_kind(point);
+    double r = largest_radius(local, j), edge = r1[kind];
     int level = 0;
     for (; level + 1 < LOCAL_LEVELS && 0.5 * edge >= r; level++) edge *= 0.5;
     local->level[j] = (unsigned char)level;
-    local->used[level] = true;
-    largest = largest < r ? r : largest;
+    local->field[kind].used[level] = true;
+    largest[kind] = largest[kind] < r ? r : largest[kind];
   }
-  return largest;
+}
+
+// As the map's, into the photons of a thread where there are several.
+static struct photon_sinks sinks_of(const struct local *local, struct local_worker *worker,
+                                    struct photon_sinks sinks) {
+  if (local->n_workers == 1) return sinks;
+  sinks.surface.photons = &worker->photons[ON_SURFACE];
+  if (sinks.volume.photons) sinks.volume.photons = &worker->photons[IN_VOLUME];
+  return sinks;
 }
 
 // Each thread traces a part of the pass; the parts put together are the pass.
-static void emit(struct local *local, uint64_t i, double r) {
+static void emit(struct local *local, uint64_t i, const double r[POINT_KINDS]) {
   struct photon_map *map = local->map;
   const struct measurement *measure = map->measure;
-  const struct photon_filter *filter = photon_map_filter(map, r);
+  struct photon_sinks shared = photon_map_sinks(map, r);
   uint64_t batches = (measure->n_emitted + WALK_BATCH - 1) / WALK_BATCH;
   uint64_t n = (uint64_t)local->n_workers;
 #pragma omp parallel for schedule(static, 1) num_threads(local->n_workers)
@@ -145,22 +181,27 @@ static void emit(struct local *local, uint64_t i, double r) {
                                .first_vertex = measure->nee ? 1 : 0,
                                .first = t * batches / n * WALK_BATCH};
     begin(map, worker->walk, RNG_PHOTONS, i);
-    struct photon_sinks sinks = {.surface = {n == 1 ? &map->photons : &worker->photons, filter}};
+    struct photon_sinks sinks = sinks_of(local, worker, shared);
     photons_trace(worker->walk, &pass, &sinks, worker->arena);
   }
   if (n == 1) return;
-  map->photons.count = 0;
-  for (int t = 0; t < local->n_workers; t++)
-    photons_append(&map->photons, &local->worker[t].photons, map->arena);
+  for (int kind = 0; kind < measurement_kinds(measure); kind++) {
+    struct photons *photons = &map->field[kind].photons;
+    photons->count = 0;
+    for (int t = 0; t < local->n_workers; t++)
+      photons_append(photons, &local->worker[t].photons[kind], map->arena);
+  }
 }
 
 static void build_grids(struct local *local) {
-  double r1 = largest_r1(local->map->measure);
+  const struct measurement *measure = local->map->measure;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers)
-  for (int level = 0; level < LOCAL_LEVELS; level++) {
-    double edge = r1 / (double)(1 << level);
-    if (!local->used[level]) continue;
-    grid_build(&local->grid[level], &local->map->photons, edge,
+  for (int k = 0; k < measurement_kinds(measure) * LOCAL_LEVELS; k++) {
+    int kind = k / LOCAL_LEVELS, level = k % LOCAL_LEVELS;
+    struct local_field *field = &local->field[kind];
+    double edge = largest_r1(measure, (enum point_kind)kind) / (double)(1 << level);
+    if (!field->used[level]) continue;
+    grid_build(&field->grid[level], &local->map->field[kind].photons, edge,
                local->worker[omp_get_thread_num()].arena);
   }
 }
@@ -169,38 +210,46 @@ static void gather(struct local *local, struct local_worker *worker, int point, 
   struct photon_map *map = local->map;
   const struct measurement *measure = map->measure;
   int n = measure->n_estimators, n_channels = measure->features.n_channels;
+  enum point_kind kind = eye_point_kind(&map->point[point]);
+  const struct photon_field *field = &map->field[kind];
   memset(worker->found, 0, (size_t)n * sizeof *worker->found);
   if (!map->point[point].bsdf.type) return;
   for (int e = 0; e < n; e++)
-    worker->disc[e] = disc_of(measure->estimator[e].kernel, map->c[e],
-                              sqrt(local->r2[(long)point * n + e]), measure->n_emitted);
-  gather_point(&worker->gather, &map->photons, &local->grid[local->level[point]],
+    worker->disc[e] = disc_of(measure->estimator[e].kernel, field->c[e],
+                              local_radius(local, point, e), field->d, measure->n_emitted);
+  gather_point(&worker->gather, &field->photons, &local->field[kind].grid[local->level[point]],
                &map->point[point], measure->depth, worker->disc, n, worker->found,
                frame + (long)point * n_channels, (long)measure->n_points * n_channels,
                worker->arena);
 }
 
-// The next pass' radius of each estimator at a point.
+// The next pass' r^d of each estimator at a point: a law without local statistics shrinks both
+// kinds, one with them that which was seen.
 static void shrink(struct local *local, const int64_t *found, int point, uint64_t i) {
   const struct measurement *measure = local->map->measure;
   for (int e = 0; e < measure->n_estimators; e++) {
     const struct estimator *estimator = &measure->estimator[e];
+    const struct law *law = estimator->law;
     long k = (long)point * measure->n_estimators + e;
-    double ratio;
-    if (!estimator->law->count) {
-      local->r2[k] = estimator->r1 * estimator->r1 * estimator->law->rho(estimator->alpha, i + 1);
-      continue;
+    for (int kind = 0; kind < measurement_kinds(measure) && !law->count; kind++) {
+      struct local_field *field = &local->field[kind];
+      double r1 = estimator_r1(estimator, (enum point_kind)kind);
+      field->rd[k] = power(r1, field->d) * law->rho(estimator->alpha, i + 1);
     }
-    local->n[k] = estimator->law->count(estimator->alpha, local->n[k], (double)found[e], &ratio);
-    local->r2[k] *= ratio;
+    if (!law->count) continue;
+    struct local_field *field = field_of(local, point);
+    double ratio;
+    field->n[k] = law->count(estimator->alpha, field->n[k], (double)found[e], &ratio);
+    field->rd[k] *= ratio;
   }
 }
 
 void local_pass(struct local *local, uint64_t i, double *frame) {
   const struct measurement *measure = local->map->measure;
   memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
-  double r = set_levels(local);
-  if (r > 0) emit(local, i, r);
+  double largest[POINT_KINDS];
+  set_levels(local, largest);
+  if (largest[ON_SURFACE] > 0 || largest[IN_VOLUME] > 0) emit(local, i, largest);
   build_grids(local);
 #pragma omp parallel for schedule(dynamic, POINTS_AT_ONCE) num_threads(local->n_workers)
   for (int j = 0; j < measure->n_points; j++) {
@@ -212,8 +261,12 @@ void local_pass(struct local *local, uint64_t i, double *frame) {
 }
 
 int64_t local_bytes(const struct local *local) {
-  int64_t bytes = photons_bytes(&local->map->photons);
-  for (int level = 0; level < LOCAL_LEVELS; level++)
-    if (local->used[level]) bytes += grid_bytes(&local->grid[level]);
+  int64_t bytes = 0;
+  for (int kind = 0; kind < measurement_kinds(local->map->measure); kind++) {
+    const struct local_field *field = &local->field[kind];
+    bytes += photons_bytes(&local->map->field[kind].photons);
+    for (int level = 0; level < LOCAL_LEVELS; level++)
+      if (field->used[level]) bytes += grid_bytes(&field->grid[level]);
+  }
   return bytes;
 }

@@ -12,15 +12,25 @@
 #include <stdint.h>
 #include <string.h>
 
+// Where an eye point is: on a surface, or in a medium. Photons of each kind are kept apart.
+enum point_kind { ON_SURFACE, IN_VOLUME, POINT_KINDS };
+static const int point_dimension[POINT_KINDS] = {2, 3};
+
 // One estimator on the shared photons.
 struct estimator {
   const struct kernel *kernel;
   const struct law *law;
   double alpha;
-  double r1; // support at i = 1, in units of the reference radius; without one, scene units
+  double r1;        // support at i = 1, in units of the reference radius; without one, scene units
+  double r1_volume; // of points in media; 0: r1
   const struct reference_radius *reference; // NULL: global
   int k; // nearest photons of the reference radius, or of a photon map's estimate; 0: none
 };
+
+static inline double estimator_r1(const struct estimator *estimator, enum point_kind kind) {
+  bool own = kind == IN_VOLUME && estimator->r1_volume > 0;
+  return own ? estimator->r1_volume : estimator->r1;
+}
 
 // What determines the paths, and the estimators that share them.
 struct measurement {
@@ -48,6 +58,11 @@ struct measurement {
 static inline bool measurement_is_static(const struct measurement *measure) {
   return !measure->footprint && !measure->features.random_eye &&
          !(measure->skip_off & SKIP_STATIC_EYE);
+}
+
+// The kinds there are, from the first: without media only surfaces.
+static inline int measurement_kinds(const struct measurement *measure) {
+  return measure->features.media ? POINT_KINDS : ON_SURFACE + 1;
 }
 
 // Kernel, law and radius mean nothing to some integrators: all estimators get the first one's

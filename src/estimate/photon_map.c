@@ -3,7 +3,17 @@
 #include "walk/connect.h"
 #include "walk/dimension.h"
 
+#include <assert.h>
+#include <math.h>
 #include <string.h>
+
+static void field_begin(struct photon_field *field, const struct measurement *measure, int d,
+                        struct arena *arena) {
+  field->d = d;
+  field->c = arena_new(arena, double, measure->n_estimators);
+  for (int e = 0; e < measure->n_estimators; e++)
+    field->c[e] = measure->estimator[e].kernel->constants(d).c;
+}
 
 struct photon_map *photon_map_new(const struct measurement *measure, struct arena *arena) {
   struct photon_map *map = arena_new(arena, struct photon_map, 1);
@@ -14,9 +24,8 @@ struct photon_map *photon_map_new(const struct measurement *measure, struct aren
   map->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
   map->point = arena_new(arena, struct eye_point, measure->n_points);
   map->disc = arena_new(arena, struct disc, measure->n_estimators);
-  map->c = arena_new(arena, double, measure->n_estimators);
-  for (int e = 0; e < measure->n_estimators; e++)
-    map->c[e] = measure->estimator[e].kernel->constants(2).c;
+  for (int kind = 0; kind < measurement_kinds(measure); kind++)
+    field_begin(&map->field[kind], measure, point_dimension[kind], arena);
   if (measure->nee && !(measure->left_out & LIGHT_PATH_DIRECT))
     map->direct = arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
   return map;
@@ -30,31 +39,59 @@ void photon_map_see(struct photon_map *map, uint64_t i) {
             map->point);
 }
 
-const struct photon_filter *photon_map_filter(struct photon_map *map, double r) {
-  const struct measurement *measure = map->measure;
-  if (measure->n_points > PHOTON_MAP_FEW || (measure->skip_off & SKIP_UNSEEN)) return NULL;
-  int n = 0;
-  for (int j = 0; j < measure->n_points; j++)
-    if (map->point[j].hit) map->seen_point[n++] = map->point[j].p;
-  grid_seen_mark(&map->seen, map->seen_point, n, r);
-  map->filter = (struct photon_filter){grid_seen_keep, &map->seen};
-  return &map->filter;
+static bool keep_none(const void *data, struct vec p) {
+  (void)data, (void)p;
+  return false;
 }
 
-void photon_map_emit(struct photon_map *map, uint64_t i, double r) {
+// NULL: all may be found.
+static const struct photon_filter *filter_of(struct photon_map *map, enum point_kind kind,
+                                             double r) {
+  const struct measurement *measure = map->measure;
+  struct photon_field *field = &map->field[kind];
+  field->filter = (struct photon_filter){keep_none, NULL};
+  if (measure->skip_off & SKIP_UNSEEN) return NULL;
+  if (r == 0) return &field->filter;
+  if (measure->n_points > PHOTON_MAP_FEW) return NULL;
+  int n = 0;
+  for (int j = 0; j < measure->n_points; j++)
+    if (map->point[j].hit && eye_point_kind(&map->point[j]) == kind)
+      map->seen_point[n++] = map->point[j].p;
+  grid_seen_mark(&field->seen, map->seen_point, n, r);
+  field->filter = (struct photon_filter){grid_seen_keep, &field->seen};
+  return &field->filter;
+}
+
+struct photon_sinks photon_map_sinks(struct photon_map *map, const double r[POINT_KINDS]) {
+  struct photon_sinks sinks = {0};
+  struct photon_sink *sink[POINT_KINDS] = {&sinks.surface, &sinks.volume};
+  for (int kind = 0; kind < measurement_kinds(map->measure); kind++) {
+    // A tree depends on all photons, and so would its order on those left out.
+    const struct photon_filter *filter =
+        r[kind] == INFINITY ? NULL : filter_of(map, (enum point_kind)kind, r[kind]);
+    *sink[kind] = (struct photon_sink){&map->field[kind].photons, filter};
+  }
+  return sinks;
+}
+
+// For radii up to r; 0: nobody asks.
+static void build(struct photon_field *field, double r, struct arena *arena) {
+  if (r == INFINITY)
+    knn_build(&field->tree, field->photons.position, field->photons.count, arena);
+  else if (r > 0)
+    grid_build(&field->grid, &field->photons, r, arena);
+}
+
+void photon_map_emit(struct photon_map *map, uint64_t i, const double r[POINT_KINDS]) {
   const struct measurement *measure = map->measure;
   struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
-  // A tree depends on all photons, and so would its order on those left out.
-  map->any_radius = r == INFINITY;
-  const struct photon_filter *filter = map->any_radius ? NULL : photon_map_filter(map, r);
+  map->any_radius = r[ON_SURFACE] == INFINITY;
+  struct photon_sinks sinks = photon_map_sinks(map, r);
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
   walk_begin(map->walk, measure->seed, map->run, i);
-  struct photon_sinks sinks = {.surface = {&map->photons, filter}};
   photons_trace(map->walk, &pass, &sinks, map->arena);
-  if (map->any_radius)
-    knn_build(&map->tree, map->photons.position, map->photons.count, map->arena);
-  else
-    grid_build(&map->grid, &map->photons, r, map->arena);
+  for (int kind = 0; kind < measurement_kinds(measure); kind++)
+    build(&map->field[kind], r[kind], map->arena);
 }
 
 void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *count,
@@ -62,35 +99,45 @@ void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *
   const struct measurement *measure = map->measure;
   int n_channels = measure->features.n_channels;
   const struct eye_point *point = &map->point[j];
+  const struct photon_field *field = &map->field[eye_point_kind(point)];
   if (count) memset(count, 0, (size_t)measure->n_estimators * sizeof *count);
   if (!point->bsdf.type) return;
   for (int e = 0; e < measure->n_estimators; e++)
-    map->disc[e] = disc_of(measure->estimator[e].kernel, map->c[e], r[e], measure->n_emitted);
+    map->disc[e] =
+        disc_of(measure->estimator[e].kernel, field->c[e], r[e], field->d, measure->n_emitted);
   double *out = frame + (long)j * n_channels;
   long stride = (long)measure->n_points * n_channels;
   if (map->any_radius)
-    gather_point_in_tree(&map->gather, &map->photons, &map->tree, point, measure->depth, map->disc,
-                         measure->n_estimators, count, out, stride, map->arena);
+    gather_point_in_tree(&map->gather, &field->photons, &field->tree, point, measure->depth,
+                         map->disc, measure->n_estimators, count, out, stride, map->arena);
   else
-    gather_point(&map->gather, &map->photons, &map->grid, point, measure->depth, map->disc,
+    gather_point(&map->gather, &field->photons, &field->grid, point, measure->depth, map->disc,
                  measure->n_estimators, count, out, stride, map->arena);
 }
 
 void photon_map_nearest(struct photon_map *map, int j, const int *k, double *frame) {
   const struct measurement *measure = map->measure;
+  const struct photon_field *field = &map->field[ON_SURFACE];
   int n_channels = measure->features.n_channels;
   if (!map->point[j].bsdf.type) return;
+  assert(!map->point[j].volume); // refused where there are media
   for (int e = 0; e < measure->n_estimators; e++)
-    map->disc[e] = disc_of(measure->estimator[e].kernel, map->c[e], 1, measure->n_emitted);
-  gather_nearest(&map->gather, &map->photons, &map->tree, &map->point[j], measure->depth, map->disc,
-                 k, measure->n_estimators, frame + (long)j * n_channels,
+    map->disc[e] =
+        disc_of(measure->estimator[e].kernel, field->c[e], 1, field->d, measure->n_emitted);
+  gather_nearest(&map->gather, &field->photons, &field->tree, &map->point[j], measure->depth,
+                 map->disc, k, measure->n_estimators, frame + (long)j * n_channels,
                  (long)measure->n_points * n_channels, map->arena);
 }
 
 int64_t photon_map_bytes(const struct photon_map *map) {
-  return photons_bytes(&map->photons) + (map->any_radius
-                                             ? map->tree.count * (int64_t)sizeof(struct knn_item)
-                                             : grid_bytes(&map->grid));
+  int64_t bytes = 0;
+  for (int kind = 0; kind < measurement_kinds(map->measure); kind++) {
+    const struct photon_field *field = &map->field[kind];
+    bytes += photons_bytes(&field->photons);
+    bytes += map->any_radius ? field->tree.count * (int64_t)sizeof(struct knn_item)
+                             : grid_bytes(&field->grid);
+  }
+  return bytes;
 }
 
 // Light samples of points first..first + n - 1; the eye pass drew nothing from these pairs.

@@ -9,6 +9,17 @@
 
 enum { PHOTON_MAP_FEW = 16 }; // points; then photons elsewhere are not worth sorting
 
+// The photons of one kind, and what finds them.
+struct photon_field {
+  int d;
+  struct photons photons;
+  double *c; // [n_estimators] psi(0) of the kernel in d dimensions
+  struct grid grid;
+  struct knn tree;
+  struct grid_seen seen;
+  struct photon_filter filter; // by `seen`
+};
+
 struct photon_map {
   const struct measurement *measure;
   struct arena *arena;
@@ -16,31 +27,30 @@ struct photon_map {
   uint64_t run;
   struct eye_point *point; // [measure->n_points]
   int sets;                // ppm: the points are this many sets, each of all pixels; else 1
-  struct photons photons;
-  double *c;       // [n_estimators] psi(0) of the kernel
-  bool any_radius; // the photons are in `tree`, else in `grid`
-  struct grid grid;
-  struct knn tree;
+  struct photon_field field[POINT_KINDS]; // the first measurement_kinds of them
+  bool any_radius; // the photons are in the fields' trees, else in their grids
   struct gather gather;
   struct disc *disc; // [n_estimators] scratch
-  struct grid_seen seen;
-  struct photon_filter filter; // by `seen`
   struct vec seen_point[PHOTON_MAP_FEW];
   double *direct; // [n_points * n_channels], next-event estimation only
 };
+
+static inline enum point_kind eye_point_kind(const struct eye_point *point) {
+  return point->volume ? IN_VOLUME : ON_SURFACE;
+}
 
 struct photon_map *photon_map_new(const struct measurement *, struct arena *);
 
 // The eye pass of iteration i; i = 0: one before all iterations.
 void photon_map_see(struct photon_map *, uint64_t i);
 
-// Which photons a gather of radius up to r around the points may find; NULL: any. Holds until the
-// next call.
-const struct photon_filter *photon_map_filter(struct photon_map *, double r);
+// The photons that gathers of radius up to r[kind] around the points may find, into the map's own;
+// r[kind] = 0: nobody asks for them. Holds until the next call.
+struct photon_sinks photon_map_sinks(struct photon_map *, const double r[POINT_KINDS]);
 
-// The photon pass of iteration i, made ready for radii up to r; INFINITY: for any, and for
-// photon_map_nearest.
-void photon_map_emit(struct photon_map *, uint64_t i, double r);
+// The photon pass of iteration i, made ready for radii up to r[kind]; all INFINITY: for any, and
+// for photon_map_nearest.
+void photon_map_emit(struct photon_map *, uint64_t i, const double r[POINT_KINDS]);
 
 // Adds the estimates at a point with radius r[e] of estimator e to
 // frame[(e * n_points + point) * n_channels + c], and counts the photons in each disc (count: NULL
@@ -48,7 +58,7 @@ void photon_map_emit(struct photon_map *, uint64_t i, double r);
 void photon_map_gather(struct photon_map *, int point, const double *r, int64_t *count,
                        double *frame);
 
-// The same from the k[e] nearest photons, where k[e] > 0.
+// The same from the k[e] nearest photons, where k[e] > 0, of a point on a surface.
 void photon_map_nearest(struct photon_map *, int point, const int *k, double *frame);
 
 // Of the stored photons and what finds them.

@@ -10,21 +10,28 @@
 struct photonmap {
   struct photon_map *map;
   bool points_are_traced;
-  double *r; // [n_estimators], 0 of those that take the nearest: no disc
-  int *k;    // [n_estimators], 0 of those that have a radius
+  double *r[POINT_KINDS]; // [n_estimators], 0 of those that take the nearest: no disc
+  int *k;                 // [n_estimators], 0 of those that have a radius
   bool any_k;
 };
+
+static double *radii_of(const struct measurement *measure, enum point_kind kind,
+                        struct arena *arena) {
+  double *r = arena_new(arena, double, measure->n_estimators);
+  for (int e = 0; e < measure->n_estimators; e++)
+    r[e] = measure->estimator[e].k ? 0 : estimator_r1(&measure->estimator[e], kind);
+  return r;
+}
 
 static void *photonmap_new(const struct measurement *measure, struct arena *arena) {
   struct photonmap *state = arena_new(arena, struct photonmap, 1);
   state->map = photon_map_new(measure, arena);
-  state->r = arena_new(arena, double, measure->n_estimators);
   state->k = arena_new(arena, int, measure->n_estimators);
+  for (int kind = 0; kind < measurement_kinds(measure); kind++)
+    state->r[kind] = radii_of(measure, (enum point_kind)kind, arena);
   for (int e = 0; e < measure->n_estimators; e++) {
-    const struct estimator *estimator = &measure->estimator[e];
-    state->k[e] = estimator->k;
-    state->r[e] = estimator->k ? 0 : estimator->r1;
-    state->any_k |= estimator->k > 0;
+    state->k[e] = measure->estimator[e].k;
+    state->any_k |= state->k[e] > 0;
   }
   return state;
 }
@@ -34,25 +41,31 @@ static void photonmap_begin(void *data, uint64_t run) {
   state->map->run = run;
 }
 
-static double largest_radius(const struct photonmap *state) {
-  double largest = 0;
-  for (int e = 0; e < state->map->measure->n_estimators; e++)
-    largest = largest < state->r[e] ? state->r[e] : largest;
-  return largest;
+static void emit(struct photonmap *state, uint64_t i) {
+  const struct measurement *measure = state->map->measure;
+  double largest[POINT_KINDS] = {0};
+  for (int kind = 0; kind < measurement_kinds(measure); kind++) {
+    const double *r = state->r[kind];
+    for (int e = 0; e < measure->n_estimators; e++)
+      largest[kind] = largest[kind] < r[e] ? r[e] : largest[kind];
+    if (state->any_k) largest[kind] = INFINITY;
+  }
+  photon_map_emit(state->map, i, largest);
 }
 
 static void photonmap_step(void *data, uint64_t i, double *frame) {
   struct photonmap *state = data;
-  const struct measurement *measure = state->map->measure;
+  struct photon_map *map = state->map;
+  const struct measurement *measure = map->measure;
   memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
-  if (!measurement_is_static(measure) || !state->points_are_traced) photon_map_see(state->map, i);
+  if (!measurement_is_static(measure) || !state->points_are_traced) photon_map_see(map, i);
   state->points_are_traced = true;
-  photon_map_emit(state->map, i, state->any_k ? INFINITY : largest_radius(state));
+  emit(state, i);
   for (int j = 0; j < measure->n_points; j++) {
-    photon_map_gather(state->map, j, state->r, NULL, frame);
-    if (state->any_k) photon_map_nearest(state->map, j, state->k, frame);
+    photon_map_gather(map, j, state->r[eye_point_kind(&map->point[j])], NULL, frame);
+    if (state->any_k) photon_map_nearest(map, j, state->k, frame);
   }
-  photon_map_add_seen(state->map, i, frame);
+  photon_map_add_seen(map, i, frame);
 }
 
 static int64_t photonmap_bytes(const void *data) {

@@ -1,6 +1,7 @@
 // Probabilistic progressive photon mapping (Knaus, Zwicker 2011): iterations are independent photon
 // maps, each with its own radius r_i from a law that knows only i, times a reference radius of the
-// point; the image is their average. No local statistics, any kernel.
+// point; the image is their average. No local statistics, any kernel. Points on surfaces and in
+// media have a radius each, by the same law in r^2 and in r^3.
 #include "estimate/reference_radius.h"
 #include "integrator/integrator.h"
 
@@ -11,14 +12,15 @@ struct probabilistic {
   struct photon_map *map;
   bool points_are_fixed, points_are_traced;
   struct radii radii;
-  double *r; // [n_estimators] of this iteration, in reference radii
+  double *r[POINT_KINDS]; // [n_estimators] of this iteration, in reference radii
 };
 
 static void *probabilistic_new(const struct measurement *measure, struct arena *arena) {
   struct probabilistic *state = arena_new(arena, struct probabilistic, 1);
   state->measure = measure;
   state->map = photon_map_new(measure, arena);
-  state->r = arena_new(arena, double, measure->n_estimators);
+  for (int kind = 0; kind < measurement_kinds(measure); kind++)
+    state->r[kind] = arena_new(arena, double, measure->n_estimators);
   state->radii = radii_new(state->map, arena);
   state->points_are_fixed = measurement_is_static(measure);
   return state;
@@ -29,16 +31,26 @@ static void probabilistic_begin(void *data, uint64_t run) {
   state->map->run = run;
 }
 
-// Radii of this iteration, in reference radii; returns the largest.
-static double set_radii(struct probabilistic *state, uint64_t i) {
+// Radii of this iteration at points of one kind, in reference radii; returns the largest.
+static double set_radii(struct probabilistic *state, enum point_kind kind, uint64_t i) {
   const struct measurement *measure = state->measure;
-  double largest = 0;
+  double largest = 0, *r = state->r[kind];
   for (int e = 0; e < measure->n_estimators; e++) {
     const struct estimator *estimator = &measure->estimator[e];
-    state->r[e] = law_radius(estimator->law, estimator->alpha, estimator->r1, 2, i);
-    largest = largest < state->r[e] ? state->r[e] : largest;
+    r[e] = law_radius(estimator->law, estimator->alpha, estimator_r1(estimator, kind),
+                      point_dimension[kind], i);
+    largest = largest < r[e] ? r[e] : largest;
   }
   return largest;
+}
+
+static void emit(struct probabilistic *state, uint64_t i) {
+  double largest[POINT_KINDS] = {0};
+  for (int kind = 0; kind < measurement_kinds(state->measure); kind++) {
+    largest[kind] = set_radii(state, (enum point_kind)kind, i);
+    if (!state->radii.global) largest[kind] = INFINITY;
+  }
+  photon_map_emit(state->map, i, largest);
 }
 
 static void probabilistic_step(void *data, uint64_t i, double *frame) {
@@ -50,10 +62,11 @@ static void probabilistic_step(void *data, uint64_t i, double *frame) {
     radii_set(&state->radii);
   }
   state->points_are_traced = true;
-  double largest = set_radii(state, i);
-  photon_map_emit(state->map, i, state->radii.global ? largest : INFINITY);
-  for (int j = 0; j < measure->n_points; j++)
-    photon_map_gather(state->map, j, radii_scale(&state->radii, j, state->r), NULL, frame);
+  emit(state, i);
+  for (int j = 0; j < measure->n_points; j++) {
+    const double *r = state->r[eye_point_kind(&state->map->point[j])];
+    photon_map_gather(state->map, j, radii_scale(&state->radii, j, r), NULL, frame);
+  }
   photon_map_add_seen(state->map, i, frame);
 }
 

@@ -38,7 +38,7 @@ static void keep_images(const struct group_plan *plan, uint64_t i, const double 
 // The probes' squared radii of iteration i, before it.
 static void keep_radii(const struct group_plan *plan, uint64_t i, const void *state,
                        double *value) {
-  const double *r2 = plan->cell->integrator->local(state)->r2;
+  const double *r2 = plan->cell->integrator->local(state)->field[ON_SURFACE].rd;
   for (int c = 0; c < plan->group->n_cells; c++)
     for (int p = 0; p < plan->n_probes; p++)
       value[plan_series(plan, c, p) + plan->radius_at + (long)(i - 1)] =

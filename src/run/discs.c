@@ -37,7 +37,7 @@ static bool write_one(const char *path, const struct local *local, int estimator
     const struct eye_point *point = &local->map->point[j];
     if (!point->bsdf.type) continue;
     struct vec n = eye_normal(point);
-    double radius = sqrt(local->r2[(long)j * measure->n_estimators + estimator]), on_film[6];
+    double radius = local_radius(local, j, estimator), on_film[6];
     project(finder, point->p, n, radius, on_film);
     fprintf(out.stream, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", measure->pixel[j].x,
             measure->pixel[j].y, point->p.x, point->p.y, point->p.z, n.x, n.y, n.z, radius);

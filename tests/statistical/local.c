@@ -178,7 +178,7 @@ static void the_integrators_radii_follow_their_law(void **state) {
       local_pass(local, i, frame);
     }
     for (int e = 0; e < 2; e++)
-      sum[e] += log(local->r2[e] / (0.2 * estimator[e].law->rho(alpha, STEPS + 1))) / RUNS;
+      sum[e] += log(local->field[ON_SURFACE].rd[e] / (0.2 * estimator[e].law->rho(alpha, STEPS + 1))) / RUNS;
   }
   for (int e = 0; e < 2; e++)
     if (!(fabs(sum[e]) < 0.01)) fail_msg("%s: ln(r2 / rho) = %g", estimator[e].law->name, sum[e]);

@@ -49,6 +49,7 @@ static struct estimator estimator_of(const char *kernel, double r1, int k) {
 }
 
 static const struct pixel centre = {32, 32};
+static const double anywhere[POINT_KINDS] = {INFINITY, INFINITY};
 
 // ---- the k nearest ----
 
@@ -67,11 +68,12 @@ static int nearer(const void *a, const void *b) {
 
 // The photons by distance from the map's point.
 static void sort_photons(const struct photon_map *map, struct near *out) {
-  for (int64_t j = 0; j < map->photons.count; j++) {
-    struct vec d = vec_sub(map->photons.position[j], map->point[0].p);
-    out[j] = (struct near){vec_dot(d, d), map->photons.flux[0][j]};
+  const struct photons *photons = &map->field[ON_SURFACE].photons;
+  for (int64_t j = 0; j < photons->count; j++) {
+    struct vec d = vec_sub(photons->position[j], map->point[0].p);
+    out[j] = (struct near){vec_dot(d, d), photons->flux[0][j]};
   }
-  qsort(out, (size_t)map->photons.count, sizeof *out, nearer);
+  qsort(out, (size_t)photons->count, sizeof *out, nearer);
 }
 
 // What one would write: the sum over all k photons within the distance of the k-th.
@@ -114,8 +116,8 @@ static void the_nearest_have_no_bias_without_the_farthest(void **state) {
   photon_map_see(map, 0);
   for (uint64_t i = 1; i <= 20000; i++) {
     double frame[N_NEAREST] = {0};
-    photon_map_emit(map, i, INFINITY);
-    assert_int_equal(map->photons.count, EMITTED);
+    photon_map_emit(map, i, anywhere);
+    assert_int_equal(map->field[ON_SURFACE].photons.count, EMITTED);
     photon_map_nearest(map, 0, k_of, frame);
     sort_photons(map, near);
     for (int e = 0; e < N_NEAREST; e++) {
@@ -247,10 +249,11 @@ static void the_first_pass_is_drawn_once(void **state) {
     photon_map_see(map, 1);
     radii_set(&radii);
     r[run] = radii_scale(&radii, 0, &estimator.r1)[0];
-    photon_map_emit(map, 1, INFINITY);
+    photon_map_emit(map, 1, anywhere);
     struct gather gather = {0};
-    assert_true(r[run] !=
-                gather_distance(&gather, &map->photons, &map->tree, &map->point[0], 1, 40, &arena));
+    assert_true(r[run] != gather_distance(&gather, &map->field[ON_SURFACE].photons,
+                                          &map->field[ON_SURFACE].tree, &map->point[0], 1, 40,
+                                          &arena));
     assert_int_equal(radii_bytes(&radii), 1000 * (24 + 24 + 8 + 2 + 1 + 32));
   }
   assert_true(r[0] == r[1] && r[1] == r[2]);

@@ -204,8 +204,8 @@ static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
   for (int k = 0; k < n_kernels; k++) {
     // Two discs share the photons; the smaller one must not see those beyond it.
     double c = kernels[k].constants(2).c;
-    struct disc disc[2] = {disc_of(&kernels[k], c, r, 1000),
-                           disc_of(&kernels[k], c, 0.2, 1000)};
+    struct disc disc[2] = {disc_of(&kernels[k], c, r, 2, 1000),
+                           disc_of(&kernels[k], c, 0.2, 2, 1000)};
     double out[2] = {0}, expected[2] = {0};
     gather_point(&gather, &photons, &grid, &point, 64, disc, 2, NULL, out, 1, &arena);
     for (int64_t j = 0; j < photons.count; j++) {

@@ -119,13 +119,14 @@ static void bookkeeping(const struct measurement *measure, uint64_t n_passes,
         (struct statistics){.r2 = measure->estimator[k % n].r1 * measure->estimator[k % n].r1};
   photon_map_see(map, 0);
   for (uint64_t i = 1; i <= n_passes; i++) {
-    photon_map_emit(map, i, 1);
+    photon_map_emit(map, i, (double[POINT_KINDS]){1});
     for (long k = 0; k < (long)n * measure->n_points; k++) {
       double flux[3] = {0};
       const struct estimator *estimator = &measure->estimator[k % n];
-      int64_t m = find(&map->point[k / n], &map->photons, statistics[k].r2, flux);
+      int64_t m = find(&map->point[k / n], &map->field[ON_SURFACE].photons, statistics[k].r2, flux);
       int start = strcmp(estimator->law->name, "hachisuka") == 0;
-      correct(&statistics[k], estimator->alpha, start, m, flux, map->photons.n_channels);
+      correct(&statistics[k], estimator->alpha, start, m, flux,
+              map->field[ON_SURFACE].photons.n_channels);
     }
   }
 }
@@ -173,8 +174,8 @@ static void radii_and_counts_are_those_of_the_book(void **state) {
   for (uint64_t i = 1; i <= PASSES; i++) local_pass(local, i, frame);
   for (int k = 0; k < 2 * N_SOME; k++) {
     assert_true(statistics[k].n > 0);
-    near(local->r2[k], statistics[k].r2, 1e-13);
-    near(local->n[k], statistics[k].n, 1e-13);
+    near(local->field[ON_SURFACE].rd[k], statistics[k].r2, 1e-13);
+    near(local->field[ON_SURFACE].n[k], statistics[k].n, 1e-13);
   }
 }
 
@@ -192,12 +193,12 @@ static void light_from_the_other_side_neither_contributes_nor_shrinks_the_radius
   for (uint64_t i = 1; i <= 1000; i++) {
     local_see(local, i);
     local_pass(local, i, frame);
-    assert_true(local->map->photons.count > 100);
+    assert_true(local->map->field[ON_SURFACE].photons.count > 100);
     for (long k = 0; k < photon_map_frame(&measure); k++) assert_true(frame[k] == 0);
   }
   for (int k = 0; k < 2 * N_SOME; k++) {
-    assert_true(local->n[k] == 0);
-    assert_true(local->r2[k] == estimator[k % 2].r1 * estimator[k % 2].r1);
+    assert_true(local->field[ON_SURFACE].n[k] == 0);
+    assert_true(local->field[ON_SURFACE].rd[k] == estimator[k % 2].r1 * estimator[k % 2].r1);
   }
 }
 
