@@ -6,8 +6,10 @@
 #define _GNU_SOURCE // mkstemp
 #include "bvh/bvh.h"
 #include "tests/light_cases.h"
+#include "tests/p_values.h"
 
 enum { DRAWN = N / 4, FINE = 48, RARE = 20 };
+static struct p_values p_values;
 
 // Sums of weights in cells of the unit square, and what each draw expects there.
 struct cells {
@@ -66,6 +68,7 @@ static void assert_chi2(const char *what, const struct cells *cells) {
   assert_true(terms > 8);
   double p = gsl_cdf_chisq_Q(chi2, terms - 1);
   if (getenv("LIGHT_VERBOSE")) print_message("%-50s %6.1f of %3d, p %.3g\n", what, chi2, terms, p);
+  p_values_add(&p_values, p);
   if (!(p >= level)) fail_msg("%s: chi-squared %.1f of %d, p = %.2g", what, chi2, terms - 1, p);
 }
 
@@ -313,12 +316,18 @@ static void test_samples(void **state) {
   }
 }
 
+static void test_p_values(void **state) {
+  (void)state;
+  assert_p_uniform(&p_values, 25);
+}
+
 int main(void) {
   arena = arena_reserve();
   write_image();
   const struct CMUnitTest tests[] = {
       {"photons leave as the light shines", test_photons, NULL, NULL, NULL},
       {"what is sampled has the density that is asked", test_samples, NULL, NULL, NULL},
+      {"the p-values of all are uniform", test_p_values, NULL, NULL, NULL},
   };
   int failed = cmocka_run_group_tests_name("light_sampling", tests, NULL, NULL);
   unlink(P_tmpdir "/" IMAGE);
