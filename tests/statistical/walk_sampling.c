@@ -387,6 +387,40 @@ static void phase_functions_scatter_as_they_say(void **state) {
   }
 }
 
+// In fog of sigma_t = 0.7 that absorbs nothing: how far, whereto, and how far again.
+static void flights_end_exponentially(void **state) {
+  (void)state;
+  struct walks walks =
+      walks_of("WorldBegin MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb "
+               "sigma_a\" [0 0 0] \"rgb sigma_s\" [.7 .7 .7] MediumInterface \"fog\" \"fog\" "
+               "LightSource \"point\" Shape \"sphere\" \"float radius\" 100",
+               RNG_PHOTONS, __func__);
+  struct walk *walk = walks.walk;
+  struct cells cells = {.total = 0};
+  static double first[WALK_BATCH], cosine[WALK_BATCH], azimuth[WALK_BATCH];
+  for (int batch = 0; batch < BATCHES; batch++) {
+    walks_begin(walk, batch);
+    photons_emit(walk);
+    walk_trace(walk);
+    walk_vertex_random(walk);
+    for (int j = 0; j < WALK_BATCH; j++) {
+      struct vec x, y, d = walk->ray[j].d;
+      vec_basis(d, &x, &y);
+      first[j] = 1 - exp(-0.7 * walk->hit[j].t);
+      assert_true(walk_collided(walk, j) && walk_scatter_in_medium(walk, j));
+      struct vec wi = walk->ray[j].d;
+      cosine[j] = (1 + vec_dot(wi, d)) / 2, azimuth[j] = turn(vec_dot(wi, x), vec_dot(wi, y));
+    }
+    walk->vertex++;
+    walk_trace(walk);
+    for (int j = 0; j < WALK_BATCH; j++)
+      cells_add(&cells,
+                (double[]){first[j], cosine[j], azimuth[j], 1 - exp(-0.7 * walk->hit[j].t)});
+  }
+  check_cells("flights", &cells);
+  arena_release(walks.kept);
+}
+
 static void p_values_are_uniform(void **state) {
   (void)state;
   assert_p_uniform(&p_values, 25);
@@ -402,6 +436,7 @@ int main(void) {
       cmocka_unit_test(sheets_stop_their_share),
       cmocka_unit_test(times_fill_the_shutter),
       cmocka_unit_test(phase_functions_scatter_as_they_say),
+      cmocka_unit_test(flights_end_exponentially),
       cmocka_unit_test(p_values_are_uniform),
   };
   return cmocka_run_group_tests_name("walk_sampling", tests, NULL, NULL);
