@@ -35,6 +35,9 @@ void predict_print_csv(const struct predicted *, int n, FILE *);
 
 // ---- what they are made of ----
 
+// The measure of a ball of d dimensions.
+double predict_ball(int d, double radius);
+
 enum { PREDICT_TEXT = 64 };
 // A dash for what is not known.
 void predict_number(char text[PREDICT_TEXT], double);

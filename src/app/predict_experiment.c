@@ -18,10 +18,9 @@ static struct local_light light_in(const struct prediction *p, const struct cell
   double mu = p->truth - probe->emitted;
   struct local_light light = {
       .mu = mu, .photons = (double)cell->photons, .lambda = NAN, .curvature = NAN};
-  const double disc = 0x1.921fb54442d18p+1; // of radius 1
   if (p->closed_form)
-    light.lambda =
-        cell->kernel->constants(p->d).roughness * disc * mu * mu / p->variance_coefficient;
+    light.lambda = cell->kernel->constants(p->d).roughness * predict_ball(p->d, 1) * mu * mu /
+                   p->variance_coefficient;
   if (p->unbiased)
     light.curvature = 0;
   else if (p->closed_form && is_series(p))
@@ -36,7 +35,7 @@ static struct asymptote edge_limit(const struct prediction *p, const struct mode
   if (p->bias_kind == BIAS_EDGE) return (struct asymptote){p->bias[p->n - 1], 0, false};
   if (p->bias_kind == BIAS_ENDS) return (struct asymptote){average * n, 1, false};
   if (p->bias_kind != BIAS_SIDE) return (struct asymptote){NAN, NAN, false};
-  struct expansion side = {1, {{p->bias[0], 1.0 / p->d}}};
+  struct expansion side = {1, {{p->closed_form ? p->bias[0] : NAN, 1.0 / p->d}}};
   return expansion_asymptote(&side, model->law, model->alpha, 1);
 }
 
@@ -65,8 +64,7 @@ static struct predicted predict_probe(const struct scene *scene, const struct ce
       .curve = curve_of_prediction(&p, cell, arena),
   };
   predicted.rates = rates_new(&predicted.model, cell->iterations);
-  if (p.closed_form && !is_series(&p))
-    predicted.rates.bias = edge_limit(&p, &predicted.model, &predicted.curve);
+  if (!is_series(&p)) predicted.rates.bias = edge_limit(&p, &predicted.model, &predicted.curve);
   if (p.closed_form && p.bias_kind == BIAS_EDGE) predicted.rates.variance.constant *= lit_share(&p);
   if (p.closed_form && p.divergent[p.n - 1] == 0)
     predicted.rates.variance = dark_limit(&predicted.curve);

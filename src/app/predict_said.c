@@ -129,7 +129,7 @@ static bool read_questions(const struct cli *cli, struct questions *questions,
 
 // ---- the light ----
 
-static double ball(int d, double radius) {
+double predict_ball(int d, double radius) {
   const double pi = 0x1.921fb54442d18p+1;
   return d == 1   ? 2 * radius
          : d == 2 ? pi * radius * radius
@@ -141,7 +141,7 @@ static struct local_light light_of(const struct question *question) {
   struct local_light light = {.mu = 1, .photons = photons, .lambda = 100, .curvature = -0.1};
   if (!isnan(question->lambda)) light.lambda = question->lambda;
   if (!isnan(question->density))
-    light.lambda = question->density * ball((int)question->d, r1) * photons;
+    light.lambda = question->density * predict_ball((int)question->d, r1) * photons;
   if (!isnan(question->curvature)) light.curvature = question->curvature;
   if (!isnan(question->laplacian)) light.curvature = question->laplacian * r2;
   light.bicurvature = question->bilaplacian * r2 * r2;

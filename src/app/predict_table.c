@@ -62,8 +62,11 @@ static void print_photons(const struct predicted *p, char *text) {
   strcpy(text, "-");
   if (has_photons(p)) count(text, p->cell->photons);
 }
+static double first_radius(const struct predicted *p) {
+  return p->probe ? probe_radius(p->cell, p->probe) : p->cell->radius;
+}
 static void print_radius(const struct predicted *p, char *text) {
-  asked_number(text, has_photons(p) && p->cell->radius > 0 ? p->cell->radius : NAN);
+  asked_number(text, has_photons(p) && first_radius(p) > 0 ? first_radius(p) : NAN);
 }
 static void print_lambda(const struct predicted *p, char *text) {
   asked_number(text, p->model.light.lambda);
@@ -120,7 +123,7 @@ static void print_bias_slope(const struct predicted *p, char *text) {
   print_slope(text, p->slopes.bias);
 }
 static void print_best_radius(const struct predicted *p, char *text) {
-  predict_number(text, p->rates.best_radius * p->cell->radius);
+  predict_number(text, p->rates.best_radius * first_radius(p));
 }
 static void print_best_alpha(const struct predicted *p, char *text) {
   predict_number(text, p->rates.best_alpha_at_n);

@@ -81,6 +81,7 @@ const struct integrator_type integrator_photonmap = {
     .independent = true,
     .takes_k = true,
     .fixed = true,
+    .volume_dimension = 3,
     .create = photonmap_new,
     .begin = photonmap_begin,
     .step = photonmap_step,

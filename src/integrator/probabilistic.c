@@ -82,6 +82,7 @@ const struct integrator_type integrator_probabilistic = {
     .photons = true,
     .independent = true,
     .takes_reference = true,
+    .volume_dimension = 3,
     .create = probabilistic_new,
     .begin = probabilistic_begin,
     .step = probabilistic_step,

@@ -25,6 +25,7 @@ const struct integrator_type integrator_sppm = {
     .law = "hachisuka",
     .photons = true,
     .independent = false,
+    .volume_dimension = 3,
     .create = sppm_new,
     .begin = sppm_begin,
     .step = sppm_step,

@@ -28,12 +28,14 @@ static bool read_probe(struct csv *csv, char *const *field, struct probe *probe)
                             &probe->scale_rgb[0], &probe->scale_rgb[1], &probe->scale_rgb[2],
                             &probe->emitted,      &probe->reference,    &probe->reference_se};
   if (!csv_whole(csv, field[0], 0, MOST_PIXELS, &x) ||
-      !csv_whole(csv, field[1], 0, MOST_PIXELS, &y) || !csv_whole(csv, field[2], 0, 1, &hit) ||
+      !csv_whole(csv, field[1], 0, MOST_PIXELS, &y) || !csv_whole(csv, field[2], 0, 7, &hit) ||
       !csv_numbers(csv, field + 3, sizeof number / sizeof *number, number))
     return false;
   probe->x = (int)x;
   probe->y = (int)y;
-  probe->hit = hit;
+  probe->hit = hit & 1;
+  probe->volume = hit & 2;
+  probe->ends = hit & 4;
   probe->scale = luminance(probe->scale_rgb, 3);
   return true;
 }

@@ -13,7 +13,9 @@
 // A probe of one part's scene: where its unjittered ray meets the scene, and what is true there.
 struct probe {
   int x, y;
-  bool hit;        // false: the ray leaves the scene
+  bool hit;        // a surface; false: the ray leaves the scene
+  bool volume;     // it flies through a medium on the way,
+  bool ends;       // ... which ends on it, at a surface or elsewhere
   struct vec p, n; // world; n on the side of the eye
   double scale;    // radiance in the pixel per irradiance there, luminance: f_r (1/sr) of a diffuse
                    // surface, times what mirrors on the way to the eye leave
@@ -32,10 +34,22 @@ struct series {
   struct moments *average;    // of the running average after N iterations
   struct moments *radius2;    // [n_iterations], scene units^2: of a local law's radius; NULL: none
   struct moments *richardson; // [n_iterations]: bias of iteration i by Richardson; NULL: none
-  // Of each run: [n_checkpoints][runs], the running averages of its values and, where there are any,
-  // of its biases by Richardson; NULL: only moments are kept.
+  // Of each run: [n_checkpoints][runs], the running averages of its values and, where there are
+  // any, of its biases by Richardson; NULL: only moments are kept.
   double *run_average, *run_richardson;
 };
+
+// Of what leads there as radii shrink: of the kernel in the medium, on a surface 2.
+static inline int probe_dimension(const struct cell *cell, const struct probe *probe) {
+  int volume = cell->integrator->volume_dimension;
+  return probe->volume && volume ? volume : 2;
+}
+
+// The first support of the same, in reference radii.
+static inline double probe_radius(const struct cell *cell, const struct probe *probe) {
+  (void)probe;
+  return cell->radius;
+}
 
 struct results {
   const char *directory;

@@ -79,12 +79,13 @@ bool output_set_aside(const struct plan *plan, const char *directory, struct are
 
 // ---- log.csv and images ----
 
-static void write_group_log(FILE *out, const struct plan *plan, const struct group_plan *group,
-                            struct moments *moments) {
+static void write_group_log(FILE *out, const struct outputs *outputs,
+                            const struct group_plan *group, struct moments *moments) {
   for (int e = 0; e < group->group->n_cells; e++)
     for (int p = 0; p < group->n_probes; p++) {
       struct series series = series_of(group, e, p, moments);
-      log_write_series(out, &plan->experiment->cell[series.cell], &series);
+      log_write_series(out, &outputs->plan->experiment->cell[series.cell],
+                       &outputs->probe[series.cell][p], &series);
     }
 }
 
@@ -125,7 +126,7 @@ static bool write_logs(const struct outputs *outputs, struct arena scratch,
     struct arena own = scratch;
     struct moments *moments = arena_new(&own, struct moments, group->width);
     block_merge(group, block_folder(plan, outputs->directory, &own), moments, own);
-    write_group_log(log.stream, plan, group, moments);
+    write_group_log(log.stream, outputs, group, moments);
     if (!write_images(outputs, group, moments, own, problem) ||
         !discs_write(group, plan->experiment, outputs->directory, own, problem)) {
       file_abandon(&log);

@@ -192,10 +192,11 @@ static bool check_probes_hit(const struct group_plan *plan, struct arena scratch
   struct probe *probe = arena_new(&scratch, struct probe, plan->n_probes);
   plan_probes(plan, probe, scratch);
   for (int p = 0; p < plan->n_probes; p++)
-    if (!probe[p].hit)
-      return problem_set(problem, "%s: %s [%d, %d] sees no surface, choose pixels that do",
+    if (!probe[p].hit && !probe[p].volume)
+      return problem_set(problem, "%s: %s [%d, %d] sees no surface%s, choose pixels that do",
                          plan->cell->scene_path, plan->cell->n_probes ? "probe" : "default probe",
-                         probe[p].x, probe[p].y);
+                         probe[p].x, probe[p].y,
+                         plan->measure.features.media ? " and no medium" : "");
   return true;
 }
 
@@ -329,27 +330,4 @@ bool plan_make(const struct experiment *experiment, struct run_options options, 
   plan_fingerprint(plan, *arena);
   look_begin(plan);
   return true;
-}
-
-void plan_probes(const struct group_plan *plan, struct probe *probe, struct arena scratch) {
-  const struct scene *scene = &plan->loaded->scene;
-  struct features features = scene_features(scene);
-  features.n_channels = 3;
-  struct walk *walk = walk_new(scene, plan->loaded->bvh, features, &scratch);
-  for (int p = 0; p < plan->n_probes; p++) {
-    struct eye_point point;
-    eye_trace(walk, &plan->probe_pixel[p], 1, false, INT_MAX, &point);
-    probe[p] = (struct probe){.x = plan->probe_pixel[p].x,
-                              .y = plan->probe_pixel[p].y,
-                              .hit = point.hit,
-                              .reference = NAN,
-                              .reference_se = NAN};
-    if (!point.hit) continue;
-    probe[p].p = point.p;
-    probe[p].n = eye_normal(&point);
-    bsdf_value(&point.bsdf, point.wo, probe[p].n, TRANSPORT_RADIANCE, probe[p].scale_rgb);
-    for (int c = 0; c < 3; c++) probe[p].scale_rgb[c] *= point.weight[c];
-    probe[p].scale = luminance(probe[p].scale_rgb, 3);
-    probe[p].emitted = luminance(point.emitted, 3);
-  }
 }
