@@ -192,6 +192,7 @@ bool fit_results(const struct results *results, struct arena *arena, struct fit 
 
 bool fit_results_by(const struct fit_method *method, const struct results *results,
                     struct arena *arena, struct fit *fit, struct problem *problem) {
+  if (method->accepts && !method->accepts(results, problem)) return false;
   struct shared shared = {0};
   struct prediction *prediction = arena_new(arena, struct prediction, results->n_series);
   for (int s = 0; s < results->n_series; s++) {

@@ -216,7 +216,7 @@ static void fill_expected(const struct model *model, const struct solution *at, 
 struct bias_fit fit_bias(const struct prediction *theory, const struct moments *iteration,
                          const struct variance_fit *v, const double *variance,
                          struct arena *arena) {
-  struct bias_fit fit = {0};
+  struct bias_fit fit = {.dof = v->dof};
   ptrdiff_t n = (ptrdiff_t)theory->n;
   if (!isfinite(theory->truth) || !isfinite(theory->truth_se)) return fit;
   double *difference = arena_new(arena, double, n), *weight = arena_new(arena, double, n);
@@ -248,7 +248,7 @@ struct bias_fit fit_bias(const struct prediction *theory, const struct moments *
   if (theory->unbiased) return fit;
   if (isnan(rate)) return fit;
   fit.rate_se_theory = curvature_se(&model, &held);
-  fit.rate_found = find_rate(&model, &held, &best, v->dof, &fit);
+  fit.rate_found = find_rate(&model, &held, &best, fit.dof, &fit);
   if (fit.rate_found) fit.lack_of_fit = lack_of_fit(&model, &best, true, v->worth, *arena);
   return fit;
 }

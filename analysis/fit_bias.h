@@ -19,6 +19,7 @@ struct bias_fit {
   double rate, rate_se, rate_lo, rate_hi; // see bias_theory_rate; 95 % profile interval
   double rate_se_theory;                  // standard error of the rate if theory is right
   double rate_deviate;                    // signed root of the likelihood ratio against theory
+  double dof; // of the variance that the standard errors rest on: deviates are Student's t
 };
 
 // With the variance's fit, and [n] its variances of one iteration that weigh the means.

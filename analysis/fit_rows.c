@@ -19,7 +19,7 @@ static void add_deviate(struct fit_row *row, const char *name, double z) {
   add_test(row, name, z, special_two_sided(z));
 }
 
-// A bias's standard error rests on a measured variance.
+// A standard error rests on a measured variance.
 static void add_t(struct fit_row *row, const char *name, double t, double variance_dof) {
   add_test(row, name, t, special_t_two_sided(t, variance_dof));
 }
@@ -78,14 +78,10 @@ static void variance_row(const struct variance_fit *v, const struct prediction *
   if (has_constants(theory)) row->coefficient_theory = theory->variance_coefficient;
   add_silence(row, v->silence);
   if (v->why) return;
-  double half = special_normal_quantile(0.025) * v->rate_se;
-  set_rate(row, v->rate, v->rate_se, v->rate - half, v->rate + half);
+  set_rate(row, v->rate, v->rate_se, v->rate_lo, v->rate_hi);
   set_coefficient(row, theory->variance_coefficient, v->coefficient, v->coefficient_se);
-  if (row->resolved) add_deviate(row, "rate", (v->rate - row->rate_theory) / v->rate_se);
-  if (has_constants(theory)) {
-    double z = special_gamma_deviate(v->coefficient, v->null_se * v->null_se);
-    add_deviate(row, "coefficient", z);
-  }
+  if (row->resolved) add_t(row, "rate", v->rate_deviate, v->deviate_dof);
+  if (has_constants(theory)) add_t(row, "coefficient", v->coefficient_deviate, v->deviate_dof);
 }
 
 static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
@@ -98,18 +94,18 @@ static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
   set_coefficient(row, theory->unbiased ? 1 : known, b->coefficient, b->coefficient_se);
   row->snr = b->snr;
   row->upper_bound =
-      fabs(row->coefficient) + special_t_quantile(0.025, v->dof) * row->coefficient_se;
+      fabs(row->coefficient) + special_t_quantile(0.025, b->dof) * row->coefficient_se;
   row->expected_snr = fabs(row->coefficient_theory) / row->coefficient_se;
   row->detected = b->snr >= fit_detection_snr && !theory->unbiased;
   // A rate that theory says cannot be known is not known because chance put the best fit where the
   // profile is narrow.
   if (row->detected && b->rate_found && b->rate_se_theory <= largest_rate_se)
     set_rate(row, b->rate, b->rate_se, b->rate_lo, b->rate_hi);
-  if (row->resolved) add_t(row, "rate", b->rate_deviate, v->dof);
+  if (row->resolved) add_t(row, "rate", b->rate_deviate, b->dof);
   if (theory->unbiased)
-    add_t(row, "zero-bias", b->coefficient / b->coefficient_se, v->dof);
+    add_t(row, "zero-bias", b->coefficient / b->coefficient_se, b->dof);
   else if (has_constants(theory))
-    add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, v->dof);
+    add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, b->dof);
 }
 
 // The rate's own variance where it is known well, else theory's.
@@ -185,6 +181,7 @@ static void fit_richardson(const struct fit_estimators *by, const struct results
   struct series difference = *series;
   difference.iteration = series->richardson;
   difference.average = means_of_averages(series, series->richardson, &scratch);
+  difference.run_average = series->run_richardson;
   struct prediction shape = prediction_from_reference(0, 0, theory->d, &theory->family, &scratch);
   struct prediction bias = prediction_of_richardson(theory);
   shape.first = theory->first;

@@ -193,7 +193,16 @@ struct variance_fit fit_variance(const struct prediction *theory, const struct m
   fit.null_se = 1 / sqrt(information_of(theory, fit.dispersion));
   fit.dof = 2 / (fit.null_se * fit.null_se);
   fit.why = NULL;
+  variance_fit_judge(&fit, theory);
   return fit;
+}
+
+void variance_fit_judge(struct variance_fit *fit, const struct prediction *theory) {
+  double half = special_normal_quantile(0.025) * fit->rate_se;
+  fit->rate_lo = fit->rate - half, fit->rate_hi = fit->rate + half;
+  fit->rate_deviate = (fit->rate - theory->family.theory) / fit->rate_se;
+  fit->coefficient_deviate = special_gamma_deviate(fit->coefficient, fit->null_se * fit->null_se);
+  fit->deviate_dof = INFINITY;
 }
 
 // Both are sums of the same squares; the first has their products between iterations besides, each

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
 bool gls_factor(int n, double *omega) {
   for (int a = 0; a < n; a++)
@@ -68,4 +69,59 @@ bool gls_descend(const struct gls_model *model, int n_free, struct gls_solution 
     if (!descend_once(model, n_free, step, worth < 1e-6, at, &eq)) return false;
   }
   return false;
+}
+
+// ---- models that are linear in all but the last parameter ----
+
+// One step is enough. Moves x there.
+static double least_at(const struct gls_model *model, double last, double *x) {
+  int n_free = model->n_parameters - 1;
+  struct normal_equations eq;
+  double step[SOLVE_MAX], chi2;
+  x[n_free] = last;
+  if (!gls_evaluate(model, n_free, x, &eq, &chi2) || !normal_solve(&eq, step, NULL))
+    return INFINITY;
+  for (int a = 0; a < n_free; a++) chi2 -= step[a] * eq.g[a];
+  for (int a = 0; a < n_free; a++) x[a] += step[a];
+  return chi2;
+}
+
+double gls_profile(const struct gls_model *model, const double *x, double last) {
+  double moved[SOLVE_MAX];
+  for (int a = 0; a < model->n_parameters; a++) moved[a] = x[a];
+  return least_at(model, last, moved);
+}
+
+// Golden section around the least of SCAN + 1, to 1e-6; none where that is at an end.
+static bool search(const struct gls_model *model, double lo, double hi, struct gls_solution *at) {
+  enum { SCAN = 24 };
+  const double golden = 0.6180339887498949, step = (hi - lo) / SCAN;
+  double chi2[SCAN + 1];
+  int lowest = 0;
+  for (int k = 0; k <= SCAN; k++) {
+    chi2[k] = gls_profile(model, at->x, lo + k * step);
+    if (chi2[k] < chi2[lowest]) lowest = k;
+  }
+  if (lowest == 0 || lowest == SCAN) return false;
+  double left = lo + (lowest - 1) * step, right = left + 2 * step;
+  while (right - left > 1e-6) {
+    double a = right - golden * (right - left), b = left + golden * (right - left);
+    if (gls_profile(model, at->x, a) < gls_profile(model, at->x, b))
+      right = b;
+    else
+      left = a;
+  }
+  least_at(model, (left + right) / 2, at->x);
+  struct normal_equations eq;
+  double unused[SOLVE_MAX];
+  return gls_evaluate(model, model->n_parameters, at->x, &eq, &at->chi2) &&
+         normal_solve(&eq, unused, at->covariance);
+}
+
+// Where residuals are large and the model bends, Gauss and Newton's steps overshoot for ever.
+bool gls_best(const struct gls_model *model, double lo, double hi, struct gls_solution *at) {
+  struct gls_solution from = *at;
+  if (gls_descend(model, model->n_parameters, at)) return true;
+  *at = from;
+  return search(model, lo, hi, at);
 }

@@ -32,4 +32,10 @@ bool gls_evaluate(const struct gls_model *, int n_free, const double *x, struct 
 // stay. False: it does not get there.
 bool gls_descend(const struct gls_model *, int n_free, struct gls_solution *);
 
+// Of a model that is linear in all parameters but its last: the least chi-squared where that one is
+// `last`, infinite where there is none; and the least of all, by descent from solution.x or, where
+// that does not get there, by a search over lo..hi.
+double gls_profile(const struct gls_model *, const double *x, double last);
+bool gls_best(const struct gls_model *, double lo, double hi, struct gls_solution *);
+
 #endif

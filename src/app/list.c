@@ -125,8 +125,7 @@ static const struct {
     {"filters", "of a pixel's samples, in scene files; radii in pixels", list_filters},
     {"views", "light paths: L light, S delta lobe, D any other scattering, E eye", list_views},
     {"skips", "what is left out where a scene does not need it", list_skips},
-    {"fit-methods", "how rates are found; no bootstrap, as the log keeps moments and not the runs",
-     list_fit_methods},
+    {"fit-methods", "how rates are found", list_fit_methods},
     {"experiment", "keys of an experiment file: name, default, meaning", list_experiment},
     {"log", "columns of log.csv: name, unit, meaning", list_log},
 };

@@ -6,7 +6,15 @@
 
 #include <stdint.h>
 
-enum rng_purpose { RNG_PHOTONS = 1, RNG_EYE, RNG_REFERENCE, RNG_TEST, RNG_TIME, RNG_RADII };
+enum rng_purpose {
+  RNG_PHOTONS = 1,
+  RNG_EYE,
+  RNG_REFERENCE,
+  RNG_TEST,
+  RNG_TIME,
+  RNG_RADII,
+  RNG_RESAMPLE
+};
 
 struct rng_key {
   uint32_t word[2];

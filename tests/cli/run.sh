@@ -103,6 +103,15 @@ check 'another method leaves the curves alone' cmp "$scratch/two/curves.csv" "$s
 "$photonlab" fit "$scratch/two" > /dev/null
 check 'the default method comes back' cmp "$scratch/two/fit.json" "$scratch/kept"
 
+{ sed 's/runs: 100/runs: 20/; s/iterations: 300/iterations: 30/' "$scratch/long.yaml"; echo 'keep: runs'; } \
+  > "$scratch/kept-runs.yaml"
+"$photonlab" run "$scratch/kept-runs.yaml" -o "$scratch/runs" --quiet > /dev/null
+"$photonlab" fit "$scratch/runs" --method bootstrap > /dev/null
+check 'runs that were kept are resampled' grep -q '"method": "bootstrap"' "$scratch/runs/fit.json"
+cp "$scratch/runs/fit.json" "$scratch/kept"
+"$photonlab" fit "$scratch/runs" --method bootstrap > /dev/null
+check 'and always the same ones' cmp "$scratch/runs/fit.json" "$scratch/kept"
+
 # One line, status 1 (2: usage), nothing left behind.
 refuses() { # refuses SENTENCE STATUS PATTERN COMMAND...
   local name=$1 status=$2 pattern=$3 output got=0
@@ -159,7 +168,9 @@ refuses 'an option out of range' 1 'alpha' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --alpha 1.5
 refuses 'a results directory that cannot be made' 1 'file' \
   "$photonlab" run "$(experiment g)" -o "$scratch/small.yaml/x"
-refuses 'a method that is none' 1 "no method 'bootstrap'" "$photonlab" fit "$scratch/two" --method bootstrap
+refuses 'a method that is none' 1 "no method 'jackknife'" "$photonlab" fit "$scratch/two" --method jackknife
+refuses 'a bootstrap of runs that were not kept' 1 'keep: runs.*--method gls' \
+  "$photonlab" fit "$scratch/two" --method bootstrap
 refuses 'fit of what is no results directory' 1 'manifest' "$photonlab" fit "$scratch"
 refuses 'more photons than memory holds' 1 'photons: 1000000000000' \
   "$photonlab" render scenes/cornell-box.pbrt -o "$out.exr" --photons 1e12

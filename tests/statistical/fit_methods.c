@@ -261,7 +261,7 @@ static void test_said(void **state) {
     assert_true((strstr(text, "cover 56 % (variance) and 43 % (bias))") != NULL) == (m == OLS));
     assert_true((strstr(text, "agree") != NULL) == (m != OLS));
   }
-  assert_null(fit_method_find("bootstrap"));
+  assert_null(fit_method_find("jackknife"));
 }
 
 int main(void) {

@@ -127,6 +127,7 @@ static inline struct series synthetic_series(const struct synthetic *s, const do
   series.iteration = arena_new(arena, struct moments, (ptrdiff_t)n);
   series.checkpoint = synthetic_checkpoints(s, &series.n_checkpoints, arena);
   series.average = arena_new(arena, struct moments, series.n_checkpoints);
+  series.run_average = arena_new(arena, double, series.n_checkpoints *(ptrdiff_t)s->runs);
   for (uint64_t run = 1; run <= s->runs; run++) {
     struct stream stream = {rng_key(rng_hash_name(s->name) + experiment, run, RNG_TEST), 0};
     double sum = 0;
@@ -137,6 +138,7 @@ static inline struct series synthetic_series(const struct synthetic *s, const do
       sum += value;
       if (i != series.checkpoint[c]) continue;
       series.average[c] = moments_merge(series.average[c], moments_of(sum / (double)i));
+      series.run_average[c * s->runs + run - 1] = sum / (double)i;
       c++;
     }
   }
