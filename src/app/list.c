@@ -55,6 +55,20 @@ static void list_lights(void) {
     printf("  %-15s %s\n", light_types[k]->name, light_types[k]->about);
 }
 
+static void list_media(void) {
+  for (int k = 0; medium_types[k]; k++)
+    printf("  %-15s %s\n", medium_types[k]->name, medium_types[k]->about);
+}
+
+static void list_presets(void) {
+  for (int k = 0; k < n_medium_presets; k++) {
+    const struct medium_preset *preset = &medium_presets[k];
+    const double *a = preset->sigma_a, *s = preset->sigma_s;
+    printf("  %-27s %11.5g %11.5g %11.5g  %11.5g %11.5g %11.5g\n", preset->name, a[0], a[1], a[2],
+           s[0], s[1], s[2]);
+  }
+}
+
 static void list_textures(void) {
   for (int k = 0; texture_types[k]; k++)
     printf("  %-15s %s\n", texture_types[k]->name, texture_types[k]->about);
@@ -119,6 +133,8 @@ static const struct {
     {"shapes", "of scene files", list_shapes},
     {"materials", "of scene files", list_materials},
     {"lights", "of scene files", list_lights},
+    {"media", "of scene files", list_media},
+    {"presets", "of homogeneous media: sigma_a and sigma_s per mm, as linear sRGB", list_presets},
     {"textures", "of scene files", list_textures},
     {"spectra", "of scene files by name, as linear sRGB", list_spectra},
     {"cameras", "of scene files", list_cameras},

@@ -50,4 +50,12 @@ struct bsdf medium_bsdf(const struct medium *);
 
 extern const struct medium_type *const medium_types[]; // NULL-terminated
 
+// Measured ones, by name.
+struct medium_preset {
+  const char *name;
+  double sigma_s[3], sigma_a[3]; // 1 / mm
+};
+extern const struct medium_preset medium_presets[];
+extern const int n_medium_presets;
+
 #endif

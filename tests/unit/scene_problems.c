@@ -5,6 +5,7 @@
 #define SPHERE "Shape \"sphere\"\n"
 #define W "WorldBegin\n"
 #define HAZE "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" "
+#define GRID "MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" "
 #define FOG "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] "
 
@@ -112,6 +113,21 @@ static const struct {
     {W HAZE "\"rgb sigma_a\" [1e200 1 1] \"float scale\" 1e200", 2, 75, "too large"},
     {W HAZE "\"float Lescale\" [-1]", 2, 49, "\"Lescale\" must not be negative"},
     {W HAZE "\"float phase\" [1]", 2, 49, "phase"},
+    {W HAZE "\"string preset\" \"skimmilk\"", 2, 49, "did you mean \"Skimmilk\"?"},
+    {W HAZE "\"string preset\" \"Cream\" \"rgb sigma_a\" [1 1 1]", 2, 73, "sigma_a"},
+    {W GRID, 2, 1, "\"float density\" is missing"},
+    {W GRID "\"rgb density\" [1 1 1]", 2, 49, "density"},
+    {W GRID "\"float density\" [1 2]", 2, 49, "has 2 samples, and nx * ny * nz is 1"},
+    {W GRID "\"float density\" [-1]", 2, 49, "must not be negative"},
+    {W GRID "\"float density\" [1e39]", 2, 49, "fit into floats"},
+    {W GRID "\"float density\" 1 \"float Lescale\" [1 2]", 2, 67, "\"Lescale\" has 2 samples"},
+    {W GRID "\"integer nx\" 0 \"float density\" 1", 2, 49, "\"nx\" must be at least 1"},
+    {W GRID "\"integer nx\" 65536 \"integer nz\" 65536", 2, 68, "more than 2^30 samples"},
+    {W GRID "\"float density\" 1 \"point3 p1\" [1 1 0]", 2, 67, "the grid's box is flat"},
+    {W GRID "\"float density\" 1 \"float temperature\" 1", 2, 67, "\"temperature\" is not in"},
+    {W GRID "\"float density\" 1e38 \"rgb sigma_a\" [1e290 1 1]", 2, 49, "too large"},
+    {W "ActiveTransform EndTime Translate 1 0 0\n" GRID "\"float density\" 1", 3, 1,
+     "a medium cannot move"},
     {W FOG "MediumInterface \"fgo\" \"\"\n" SPHERE, 4, 1, "did you mean \"fog\"?"},
     {W FOG "MediumInterface \"\" \"fig\"\n" SPHERE, 4, 1,
      "Shape \"sphere\": unknown medium \"fig\"; did you mean \"fog\"?"},

@@ -4,14 +4,20 @@
 
 #include "scene/read.h"
 
-// `rgb sigma_a`, `rgb sigma_s` (default 1 1 1) times `float scale`; `float g` (default 0);
-// `spectrum Le` (default 0), the emitted radiance. False: problem set. Every product is finite.
-static inline bool medium_read(struct scene_builder *builder, struct params *params,
-                               struct medium *medium, struct medium_point *point) {
-  double Le[3] = {0};
+// `rgb sigma_a`, `rgb sigma_s`, default 1 1 1. False, here and below: problem set.
+static inline bool medium_coefficients(struct scene_builder *builder, struct params *params,
+                                       struct medium_point *point) {
   for (int c = 0; c < 3; c++) point->sigma_a[c] = point->sigma_s[c] = 1;
   spectrum_read(builder, params, "sigma_a", SPECTRUM_UNBOUNDED, point->sigma_a);
   spectrum_read(builder, params, "sigma_s", SPECTRUM_UNBOUNDED, point->sigma_s);
+  return !params->problem->text[0];
+}
+
+// The rest: times `float scale`; `float g` (default 0); `spectrum Le` (default 0), the emitted
+// radiance. Every product is finite.
+static inline bool medium_read(struct scene_builder *builder, struct params *params,
+                               struct medium *medium, struct medium_point *point) {
+  double Le[3] = {0};
   spectrum_read(builder, params, "Le", SPECTRUM_ILLUMINANT, Le);
   double scale = params_float(params, "scale", 1);
   if (!(scale >= 0)) params_complain(params, "scale", "\"scale\" must not be negative");
