@@ -84,6 +84,8 @@ static const struct option options[] = {
     {"spp", "N", "iterations", "samples a pixel: the same as --iterations", NULL},
     {"photons", "N", "photons", "emitted paths per iteration", NULL},
     {"radius", "R", "radius", "kernel support of iteration 1, in reference radii", NULL},
+    {"radius-volume", "R", "radius-volume", "the same in participating media; default as --radius",
+     NULL},
     {"reference-radius", "NAME", "reference-radius", "see 'photonlab list reference-radii'", NULL},
     {"k", "N", "k", "nearest photons, of knn or of photonmap", NULL},
     {"alpha", "A", "alpha", "fraction kept, in [0, 1]; a number or a ratio", NULL},

@@ -104,7 +104,7 @@ static int render(struct cli *cli, struct problem *problem) {
 
 const struct command command_render = {
     "render", "SCENE", "renders a scene to -o FILE.{exr,pfm,png} (default: the Film's filename)",
-    "output integrator spp iterations photons radius reference-radius k alpha kernel law direct view "
+    "output integrator spp iterations photons radius radius-volume reference-radius k alpha kernel law direct view "
     "maxdepth pixel hit-points seed "
     "threads quiet no-skip lenient",
     render};

@@ -31,6 +31,7 @@ KEY(alpha, real(cell->alpha, digits, buffer))
 KEY(reference_radius, cell->reference_radius->name)
 KEY(k, count((uint64_t)cell->k, buffer))
 KEY(radius, real(cell->radius, digits, buffer))
+KEY(radius_volume, real(cell->radius_volume, digits, buffer))
 KEY(photons, count(cell->photons, buffer))
 KEY(iterations, count(cell->iterations, buffer))
 KEY(runs, count(cell->runs, buffer))
@@ -69,6 +70,7 @@ const struct cell_key cell_keys[CELL_KEYS] = {
     {"alpha", KEY_REAL, true, key_alpha},
     {"reference-radius", KEY_NAME, false, key_reference_radius},
     {"radius", KEY_REAL, false, key_radius},
+    {"radius-volume", KEY_REAL, false, key_radius_volume},
     {"k", KEY_COUNT, false, key_k},
     {"photons", KEY_COUNT, false, key_photons},
     {"iterations", KEY_COUNT, false, key_iterations},

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-enum { CELL_KEYS = 18, CELL_KEY_SIZE = 32 };
+enum { CELL_KEYS = 19, CELL_KEY_SIZE = 32 };
 
 struct cell_key {
   const char *name;

@@ -17,6 +17,8 @@ const struct experiment_key experiment_keys[] = {
      key_read_reference_radius},
     {"radius", "(required, or 1)", "support at i = 1, in reference radii (global: scene units)",
      true, key_read_radius},
+    {"radius-volume", "(as radius)", "the same of points in participating media, scene units", true,
+     key_read_radius_volume},
     {"k", "(50 for knn)", "nearest photons: of knn, or photonmap's estimate instead of a radius",
      true, key_read_k},
     {"photons", "65536", "emitted paths per iteration", true, key_read_photons},

@@ -30,6 +30,7 @@ struct cell {
   const struct law *law;   // NULL while being read: the integrator's default
   double alpha;            // in [0, 1]
   double radius;           // support at i = 1, in reference radii, > 0; 0: it has none
+  double radius_volume;    // the same of points in media, scene units; 0: radius
   const struct reference_radius *reference_radius;
   int k;                   // nearest photons, of knn or of photonmap; 0: none
   uint64_t photons;        // emitted per iteration, >= 1

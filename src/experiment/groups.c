@@ -21,7 +21,7 @@ static bool same_images(const struct cell *a, const struct cell *b) {
          same_list(a->discs, a->n_discs, b->discs, b->n_discs);
 }
 
-// Everything but kernel, law, alpha, radius, its reference and k, and what the analysis alone looks
+// Everything but kernel, law, alpha, radii, their reference and k, and what the analysis alone looks
 // at.
 static bool same_paths(const struct cell *a, const struct cell *b) {
   return a->photons == b->photons && a->depth == b->depth && a->direct == b->direct &&

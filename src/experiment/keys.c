@@ -72,6 +72,11 @@ bool key_read_radius(struct reading *reading, const struct node *node, struct ce
   return cell->radius > 0 || value_complain(reading, node, "is not positive");
 }
 
+bool key_read_radius_volume(struct reading *reading, const struct node *node, struct cell *cell) {
+  if (!value_number(reading, node, &cell->radius_volume)) return false;
+  return cell->radius_volume > 0 || value_complain(reading, node, "is not positive");
+}
+
 bool key_read_k(struct reading *reading, const struct node *node, struct cell *cell) {
   uint64_t k;
   if (!value_count(reading, node, 1, INT_MAX, &k)) return false;

@@ -11,6 +11,7 @@ bool key_read_alpha(struct reading *, const struct node *, struct cell *);
 bool key_read_kernel(struct reading *, const struct node *, struct cell *);
 bool key_read_law(struct reading *, const struct node *, struct cell *);
 bool key_read_radius(struct reading *, const struct node *, struct cell *);
+bool key_read_radius_volume(struct reading *, const struct node *, struct cell *);
 bool key_read_reference_radius(struct reading *, const struct node *, struct cell *);
 bool key_read_k(struct reading *, const struct node *, struct cell *);
 bool key_read_photons(struct reading *, const struct node *, struct cell *);

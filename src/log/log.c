@@ -12,7 +12,8 @@ const struct log_column log_columns[] = {
     {"alpha", "1", "fraction kept"},
     {"series", "name",
      "iteration: of iteration i alone; average: running average of 1..i; squared-radius: of the "
-     "probe in iteration i (local statistics); richardson: bias of iteration i, 4/3 of what half "
+     "probe in iteration i (local statistics, of points on surfaces); richardson: bias of "
+     "iteration i, 4/3 of what half "
      "the radius takes away"},
     {"i", "1", "iteration, from 1"},
     {"radius", "reference radius",

@@ -47,8 +47,8 @@ static inline int probe_dimension(const struct cell *cell, const struct probe *p
 
 // The first support of the same, in reference radii.
 static inline double probe_radius(const struct cell *cell, const struct probe *probe) {
-  (void)probe;
-  return cell->radius;
+  bool own = probe_dimension(cell, probe) != 2 && cell->radius_volume > 0;
+  return own ? cell->radius_volume : cell->radius;
 }
 
 struct results {

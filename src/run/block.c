@@ -35,7 +35,7 @@ static void keep_images(const struct group_plan *plan, uint64_t i, const double 
     if (cell->single[m] == i) keep_image(plan, cell->n_images + m, frame, 1, value);
 }
 
-// The probes' squared radii of iteration i, before it.
+// The probes' squared radii of iteration i, before it; in media those of their points on surfaces.
 static void keep_radii(const struct group_plan *plan, uint64_t i, const void *state,
                        double *value) {
   const double *r2 = plan->cell->integrator->local(state)->field[ON_SURFACE].rd;

@@ -63,6 +63,7 @@ struct measurement plan_measurement(const struct cell *cell, const struct scene 
                                 .seed = cell->seed,
                                 .skip_off = skip_off};
   if (skip_off & SKIP_GRAY) measure.features.n_channels = 3;
+  if (skip_off & SKIP_MEDIA) measure.features.media = true;
   return measure;
 }
 
@@ -115,12 +116,25 @@ static bool check_points(const struct cell *cell, const struct scene *scene,
 // In a volume a point's own radius would be that of a ball, which nothing here finds.
 static bool check_media(const struct cell *cell, const struct scene *scene,
                         struct problem *problem) {
-  if ((cell->reference_radius->global && !cell->k) || !scene_features(scene).media) return true;
+  bool media = scene_features(scene).media;
+  if (cell->radius_volume > 0 && !media)
+    return problem_set(problem, "%s: radius-volume: the scene has no participating media",
+                       scene->path);
+  if ((cell->reference_radius->global && !cell->k) || !media) return true;
   return problem_set(problem,
                      "%s: the scene has participating media, and %s finds radii on surfaces only: "
                      "say `radius`",
                      scene->path,
                      cell->k ? "`k` (the nearest photons)" : cell->reference_radius->name);
+}
+
+static bool check_radius(const struct cell *cell, const struct scene *scene, double r1, int d,
+                         struct problem *problem) {
+  if ((d == 3 ? r1 * r1 * r1 : r1 * r1) == INFINITY)
+    return problem_set(problem, "radius %g is too large: its %s is not a number any more", r1,
+                       d == 3 ? "cube" : "square");
+  double last = law_radius(cell->law, cell->alpha, r1, d, cell->iterations);
+  return grid_radius_is_resolved(scene->bounds, last, problem);
 }
 
 bool plan_estimator(const struct cell *cell, const struct scene *scene, struct estimator *estimator,
@@ -129,6 +143,7 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
                                   .law = cell->law,
                                   .alpha = cell->alpha,
                                   .r1 = cell->radius,
+                                  .r1_volume = cell->radius_volume,
                                   .reference = cell->reference_radius,
                                   .k = cell->k};
   if (cell->integrator->accepts && !cell->integrator->accepts(scene, cell->footprint, problem))
@@ -143,11 +158,9 @@ bool plan_estimator(const struct cell *cell, const struct scene *scene, struct e
                        "fewer photons say the same",
                        cell->photons);
   if (!cell_radius_is_known(cell)) return true; // it is found when the points are
-  if (cell->radius * cell->radius == INFINITY)
-    return problem_set(problem, "radius %g is too large: its square is not a number any more",
-                       cell->radius);
-  double last = law_radius(cell->law, cell->alpha, cell->radius, 2, cell->iterations);
-  return grid_radius_is_resolved(scene->bounds, last, problem);
+  int d = scene_features(scene).media ? cell->integrator->volume_dimension : 0;
+  return check_radius(cell, scene, cell->radius, 2, problem) &&
+         (!d || check_radius(cell, scene, estimator_r1(estimator, IN_VOLUME), d, problem));
 }
 
 // The default probes: the centres of a 3x3 partition of the film.
@@ -211,6 +224,7 @@ static bool plan_estimators(struct group_plan *plan, const struct experiment *ex
     if (!plan_estimator(&cell, &plan->loaded->scene, &estimator[e], problem)) return false;
     if (!cell_has_companion(&cell)) continue;
     cell.radius *= 0.5;
+    cell.radius_volume *= 0.5;
     plan->companion[e] = n;
     if (!plan_estimator(&cell, &plan->loaded->scene, &estimator[n++], problem)) return false;
   }

@@ -8,6 +8,7 @@ const struct skip_row skip_rows[] = {
      "one eye pass for all iterations where the camera is not random"},
     {"unseen", SKIP_UNSEEN, "photons in grid cells that no point can see are not stored"},
     {"probes", SKIP_PROBES, "only the pixels that are asked for are computed"},
+    {"media", SKIP_MEDIA, "nothing of media in scenes without any"},
 };
 const int n_skip_rows = sizeof skip_rows / sizeof *skip_rows;
 
@@ -29,7 +30,7 @@ bool skip_read(const char *names, unsigned *off, struct problem *problem) {
     else
       return problem_set(problem,
                          "--no-skip: unknown name '%.*s'; known: all, gray, static-eye, "
-                         "unseen, probes (see 'photonlab list skips')",
+                         "unseen, probes, media (see 'photonlab list skips')",
                          (int)length, at);
     if (!at[length]) return true;
     at += length + 1;

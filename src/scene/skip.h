@@ -10,6 +10,7 @@ enum skip {
   SKIP_STATIC_EYE = 2, // tracing the eye pass again where nothing at the camera is random
   SKIP_UNSEEN = 4,     // storing photons in grid cells that no point can see
   SKIP_PROBES = 8,     // computing pixels nobody asked for
+  SKIP_MEDIA = 16,     // asking for media, and for photons in them, where there are none
 };
 
 struct skip_row {

@@ -147,7 +147,7 @@ static void every_key_reaches_its_field(void **state) {
       read_text("integrator: path\nlaw: knaus-zwicker\nkernel: box\nalpha: 2.385e-1\nphotons: 7\n"
                 "iterations: 11\nruns: 13\nseed: alpha\ndirect: nee\ndepth: 3\npixel: footprint\n"
                 "probes: [[1, 2], [30, 4]]\nquantity: [variance]\nimages: [5, 11]\n"
-                "single-images: [3, 7]\nkeep: runs\n"
+                "single-images: [3, 7]\nkeep: runs\nradius-volume: 0.3\n"
                 "reference: {se: 1/8, integrator: path}\n")
           .cell;
   assert_string_equal(cell->integrator->name, "path");
@@ -160,7 +160,7 @@ static void every_key_reaches_its_field(void **state) {
   assert_int_equal(cell->quantities, QUANTITY_VARIANCE);
   assert_true(cell->n_images == 2 && cell->image[0] == 5 && cell->image[1] == 11);
   assert_true(cell->n_singles == 2 && cell->single[0] == 3 && cell->single[1] == 7);
-  assert_true(cell->keeps_runs);
+  assert_true(cell->keeps_runs && cell->radius_volume == 0.3);
   assert_string_equal(cell->reference_integrator, "path");
   assert_true(cell->reference_se == 0.125);
   assert_string_equal(read_text("reference: none\n").cell->reference_integrator, "none");
@@ -255,6 +255,7 @@ static void every_key_that_crosses_takes_a_list(void **state) {
                                        {"kernel", "[box, box]"},
                                        {"alpha", "[0.5, 0.6]"},
                                        {"reference-radius", "[global, ray-differentials]"},
+                                       {"radius-volume", "[0.1, 0.2]"},
                                        {"k", "[2, 3]\nreference-radius: knn"},
                                        {"photons", "[1, 2]"},
                                        {"iterations", "[1, 2]"},
@@ -409,7 +410,7 @@ static void every_key_that_changes_the_paths_splits_the_group(void **state) {
       "hit-points: 3",         "keep: runs",
   };
   static const char *const shared[] = {"quantity: bias", "reference: none", "alpha: 0.1",
-                                       "radius: 3"};
+                                       "radius: 3", "radius-volume: 3"};
   int n;
   for (size_t j = 0; j < sizeof row / sizeof *row; j++) {
     struct experiment experiment =
@@ -446,7 +447,7 @@ static void every_experiment_of_the_project_is_read_in_both_qualities(void **sta
 
 static void every_key_of_the_table_is_described(void **state) {
   (void)state;
-  assert_int_equal(n_experiment_keys, 28);
+  assert_int_equal(n_experiment_keys, 29);
   for (int k = 0; k < n_experiment_keys; k++) {
     const struct experiment_key *key = &experiment_keys[k];
     assert_true(key->name[0] && key->fallback[0] && key->meaning[0]);

@@ -58,6 +58,7 @@ static const struct key row_keys[] = {{"cell", COUNT},
                                       {"alpha", NUMBER},
                                       {"reference-radius", STRING},
                                       {"radius", NUMBER},
+                                      {"radius-volume", NUMBER},
                                       {"k", COUNT},
                                       {"photons", COUNT},
                                       {"iterations", COUNT},
@@ -254,7 +255,8 @@ static void test_table_tells_cells_apart(void **state) {
   other[k++].number++, other[k++].scene = "another", other[k++].integrator = &integrator;
   other[k++].kernel = kernel_find("cone"), other[k++].law = law_find("power");
   other[k++].alpha = 0.66667, other[k++].reference_radius = &reference_radii[1];
-  other[k++].radius = 1.0000005, other[k++].k++, other[k++].photons++;
+  other[k++].radius = 1.0000005, other[k++].radius_volume = 0.3, other[k++].k++,
+  other[k++].photons++;
   other[k++].iterations++, other[k++].runs++, other[k++].seed++, other[k++].direct = DIRECT_NEE;
   other[k++].left_out = 1;
   other[k++].depth++, other[k++].footprint = true, other[k++].hit_points = 4;
