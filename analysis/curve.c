@@ -39,7 +39,7 @@ struct curve curve_of_prediction(const struct prediction *p, const struct cell *
                                  struct arena *arena) {
   struct curve curve = curve_new(p->n, arena);
   curve.shape = !p->closed_form;
-  double radius = cell_radius_is_known(cell) ? cell->radius : NAN;
+  double radius = cell_radius_is_known(cell) ? p->radius : NAN;
   double plus = 0, minus = 0, variance = 0, bias = 0;
   uint64_t j = 0;
   for (int k = 0; k < curve.n; k++) {

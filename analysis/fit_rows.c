@@ -182,7 +182,9 @@ static void fit_richardson(const struct fit_estimators *by, const struct results
   difference.iteration = series->richardson;
   difference.average = means_of_averages(series, series->richardson, &scratch);
   difference.run_average = series->run_richardson;
-  struct prediction shape = prediction_from_reference(0, 0, theory->d, &theory->family, &scratch);
+  // Pairs of photons in one ball are others in the half, so that their share is not theory's.
+  struct terms terms = {.d = theory->d, .pairs = theory->pairs == 0 ? 0 : NAN};
+  struct prediction shape = prediction_from_reference(0, 0, terms, &theory->family, &scratch);
   struct prediction bias = prediction_of_richardson(theory);
   shape.first = theory->first;
   struct variance_fit v = fit_variance(&shape, series->richardson, &scratch);

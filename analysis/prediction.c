@@ -1,6 +1,7 @@
 #include "analysis/prediction.h"
 
 #include "analysis/expected_radius.h"
+#include "analysis/pairs.h"
 #include "analysis/receiver.h"
 
 #include <math.h>
@@ -85,6 +86,11 @@ static uint64_t count_biased(const double *bias, uint64_t n) {
   return n;
 }
 
+// Of r1 where the measure is rho.
+static double radius_at(int d, double r1, double rho) {
+  return r1 * (d == 1 ? rho : d == 2 ? sqrt(rho) : cbrt(rho));
+}
+
 struct prediction prediction_from_profile(const struct profile *profile, double radius,
                                           double photons, double emitted,
                                           const struct family *family, struct arena *arena) {
@@ -95,7 +101,7 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   double *kurtosis = arena_new(arena, double, (ptrdiff_t)n);
   double *richardson = arena_new(arena, double, (ptrdiff_t)n);
   for (uint64_t j = 0; j < n; j++) {
-    double r = radius * sqrt(family->rho[j]);
+    double r = radius_at(profile->d, radius, family->rho[j]);
     struct iteration here = one_iteration(profile, r, photons);
     divergent[j] = here.divergent;
     rest[j] = here.rest;
@@ -108,20 +114,20 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
   double second, fourth;
   bool smooth = profile_bias_terms(profile, &second, &fourth);
   if (unbiased) smooth = true, second = fourth = 0;
+  double last = radius_at(profile->d, radius, family->rho[n - 1]);
   bool darkens = profile->shadow.shade == SHADE_DARK && !unbiased && divergent[n - 1] == 0;
   return (struct prediction){
-      .d = 2,
+      .d = profile->d,
       .n = n,
       .family = *family,
       .why_not = darkens ? "no light in the last discs" : NULL,
       .closed_form = true,
       .independent = true,
       .unbiased = unbiased,
-      .bias_kind =
-          unbiased ? BIAS_SMOOTH : kind_of_bias(profile, radius, radius * sqrt(family->rho[n - 1])),
+      .bias_kind = unbiased ? BIAS_SMOOTH : kind_of_bias(profile, radius, last),
       .bias_end = count_biased(bias, n),
       .truth = profile->exact + emitted,
-      .variance_coefficient = profile_roughness(profile) / (photons * radius * radius),
+      .variance_coefficient = profile_roughness(profile) / (photons * pow(radius, profile->d)),
       .bias_coefficient = unbiased ? 0 : bias[0],
       .bias_terms = {smooth ? second * radius * radius : NAN,
                      smooth ? fourth * radius * radius * radius * radius : NAN},
@@ -142,28 +148,34 @@ struct prediction prediction_of_richardson(const struct prediction *theory) {
   return p;
 }
 
-// Powers of rho: variance d^0, rho^(2/d - 1) and 1/rho; bias rho^(2/d) and rho^(4/d).
-struct prediction prediction_from_reference(double reference, double reference_se, int d,
-                                            const struct family *family, struct arena *arena) {
+// Powers of rho, of r^d: variance 1/rho and a constant, in a medium with pairs on the way from one
+// to the other; bias rho^(2/d) and rho^(4/d), or rho^(1/d) and rho^(2/d).
+struct prediction prediction_from_reference(double reference, double reference_se,
+                                            struct terms terms, const struct family *family,
+                                            struct arena *arena) {
   uint64_t n = family->n;
   double *divergent = arena_new(arena, double, (ptrdiff_t)n);
   double *rest = arena_new(arena, double, (ptrdiff_t)n);
   double *bias = arena_new(arena, double, (ptrdiff_t)n);
   double *bias2 = arena_new(arena, double, (ptrdiff_t)n);
-  bool constant = true;
+  double step = (terms.ends ? 1.0 : 2.0) / terms.d, pair_power = 1.0 / terms.d - 1;
+  bool constant = true, unknown_pairs = isnan(terms.pairs);
   for (uint64_t j = 0; j < n; j++) {
     double rho = family->rho[j];
     divergent[j] = 1 / rho;
-    rest[j] = pow(rho, 2.0 / d - 1);
-    bias[j] = pow(rho, 2.0 / d);
-    bias2[j] = pow(rho, 4.0 / d);
+    if (terms.pairs > 0) divergent[j] += terms.pairs * pow(rho, pair_power);
+    rest[j] = unknown_pairs ? pow(rho, pair_power) : 1;
+    bias[j] = pow(rho, step);
+    bias2[j] = pow(rho, 2 * step);
     constant &= rho == 1;
   }
   return (struct prediction){
-      .d = d,
+      .d = terms.d,
+      .pairs = terms.pairs,
       .n = n,
       .family = *family,
       .independent = true,
+      .bias_kind = terms.ends ? BIAS_SIDE : BIAS_SMOOTH,
       .truth = reference,
       .truth_se = reference_se,
       .variance_coefficient = NAN,
@@ -176,10 +188,39 @@ struct prediction prediction_from_reference(double reference, double reference_s
   };
 }
 
+static bool scatters_alike(const struct medium *medium) {
+  return medium->type->uniform && medium->type->is_gray(medium) && medium->g == 0;
+}
+
+// Of points; a second photon needs a second collision. Two beams of one path cross the same ray
+// near each other as seldom as r^2 ln r: less than a constant in the variance, but for the
+// logarithm.
+static double pairs_of(const struct scene *scene, const struct cell *cell,
+                       const struct probe *probe) {
+  double radius = probe_radius(cell, probe), sigma_s = 0;
+  if (cell->depth < 2) return 0;
+  for (uint32_t k = 0; k < scene->n_media; k++) {
+    struct medium_point at;
+    if (scene->n_media > 1 || !scatters_alike(&scene->medium[k])) return NAN;
+    scene->medium[k].type->at(&scene->medium[k], (struct vec){0}, &at);
+    sigma_s = at.sigma_s[0];
+  }
+  return 2 * sigma_s * radius * pairs_constant(cell->kernel);
+}
+
+static struct terms terms_of(const struct scene *scene, const struct cell *cell,
+                             const struct probe *probe) {
+  struct terms terms = {.d = probe_dimension(cell, probe)};
+  if (!probe->volume) return terms;
+  terms.ends = probe->ends;
+  if (terms.d == 3) terms.pairs = pairs_of(scene, cell, probe);
+  return terms;
+}
+
 // The expansion in r^2 stands once the disc is clear of edges and other surfaces.
 static uint64_t first_clear(const struct scene *scene, const struct probe *probe, double radius,
                             const struct family *family, struct arena scratch) {
-  if (!probe->hit) return 0;
+  if (!probe->hit || probe->volume) return 0;
   double clear = receiver_surroundings(scene, probe->p, probe->n, scratch);
   uint64_t first = family->n;
   while (first > 0 && radius * sqrt(family->rho[first - 1]) < clear) first--;
@@ -191,7 +232,7 @@ static uint64_t first_clear(const struct scene *scene, const struct probe *probe
 static double truth_at(const struct scene *scene, const struct cell *cell,
                        const struct probe *probe, struct arena scratch) {
   struct profile profile;
-  if (!probe->hit) return NAN;
+  if (!probe->hit || probe->volume) return NAN;
   double clear = receiver_clearance(scene, probe->p, probe->n, scratch);
   double radius = 0x1p-20 * (clear < INFINITY ? clear : 1);
   if (!profile_find(scene, cell, probe, radius, scratch, &profile)) return NAN;
@@ -227,19 +268,21 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
   struct profile profile;
   struct prediction p;
   if (cell_radius_is_known(cell) &&
-      profile_find(scene, cell, probe, cell->radius, *arena, &profile)) {
+      profile_find(scene, cell, probe, probe_radius(cell, probe), *arena, &profile)) {
     struct family own = expected_family(scene, cell, probe, family, arena);
-    p = prediction_from_profile(&profile, cell->radius, (double)cell->photons, probe->emitted, &own,
-                                arena);
+    p = prediction_from_profile(&profile, probe_radius(cell, probe), (double)cell->photons,
+                                probe->emitted, &own, arena);
   } else {
     double truth = probe->reference, se = probe->reference_se;
     if (isnan(truth) && !cell_radius_is_known(cell))
       truth = truth_at(scene, cell, probe, *arena), se = 0;
-    p = prediction_from_reference(truth, se, 2, family, arena);
+    p = prediction_from_reference(truth, se, terms_of(scene, cell, probe), family, arena);
     p.unbiased = !cell->integrator->photons;
+    if (p.unbiased) p.bias_kind = BIAS_SMOOTH;
     if (!p.unbiased && cell_radius_is_known(cell))
       p.first = first_clear(scene, probe, cell->radius, family, *arena);
   }
   p.independent = cell->integrator->independent;
+  p.radius = probe_radius(cell, probe);
   return p;
 }

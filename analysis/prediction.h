@@ -16,7 +16,7 @@ enum bias_kind {
   BIAS_SMOOTH, // as r^2, and higher powers of it
   BIAS_FOURTH, // as r^4, and higher powers: the light's Laplacian is zero
   BIAS_SIDE,   // as r: the side of the probe's pixel is an edge of the light, the bias the error
-               // integrated over one side of it (theory 5 iv)
+               // integrated over one side of it (theory 5 iv); or the medium ends on the ray
   BIAS_EDGE,   // not at all: the probe is at an edge (theory 1.5)
   BIAS_ENDS,   // it is none from iteration bias_end + 1 on: the discs are clear of an edge
   BIAS_STAYS,  // the last disc still reaches across an edge, and no power describes it
@@ -28,7 +28,9 @@ enum bias_kind {
 // bias = b1 bias + b2 bias2, with a, c, b1, b2 to be fitted. Where theory's bias is zero, `bias` is
 // the shape that is looked for.
 struct prediction {
-  int d;          // dimension of the kernel
+  int d;          // dimension of the kernel that leads
+  double pairs;   // of struct terms
+  double radius;  // the first of that kernel, in reference radii
   uint64_t n;     // iterations
   uint64_t first; // those before are not fitted: theory says nothing of their larger discs
   struct family family;
@@ -65,8 +67,25 @@ struct prediction prediction_from_profile(const struct profile *, double radius,
                                           double emitted, const struct family *, struct arena *);
 // What Richardson's estimate of the bias shows, where that is known; its variance is not.
 struct prediction prediction_of_richardson(const struct prediction *);
-// ... and where nothing but the exponents is known.
-struct prediction prediction_from_reference(double reference, double reference_se, int d,
+// What is known where nothing but exponents is. In a medium (d = 3, 1):
+// - `ends`: near where the medium ends on the ray, at a wall or an interface, balls lack the
+// photons
+//   behind. Within r of a wall that the ray meets at the cosine c an eye point sees the share lost
+//   M(h / r) at the height h: the mean over the ray lacks
+//     T sigma_s S r / c int_0^1 M(a) da = T sigma_s S r / c E|u_1| / 2     (3/16 for the box)
+//   with T what the ray has left there and S the radiance scattered at the wall over sigma_s. So
+//   the bias leads with r, and r^2 is the second term. Beams lack as much where they cross the ray
+//   near its end, unless wall and ray are at right angles.
+// - `pairs`: two photons of one path in a ball (analysis/pairs.h), over the leading term of the
+//   first iteration; NAN: some, of unknown size.
+// - How far a ray gets is random, which adds a variance that knows no radius: with points it
+//   outweighs the terms of r^-1 and r^0 that photons have.
+struct terms {
+  int d;
+  bool ends;
+  double pairs;
+};
+struct prediction prediction_from_reference(double reference, double reference_se, struct terms,
                                             const struct family *, struct arena *);
 
 #endif

@@ -1,5 +1,6 @@
 #include "analysis/profile.h"
 
+#include "analysis/fog.h"
 #include "analysis/special.h"
 #include "analysis/sphere.h"
 
@@ -13,16 +14,20 @@ static const double pi = 3.14159265358979323846;
 // GSL tables 64 nodes to full precision; most other numbers it finds to 1e-10.
 enum { RULE_NODES = 64 };
 struct kernel_rule {
-  double u2[RULE_NODES], weight[PROFILE_MOMENTS][RULE_NODES]; // 2 pi u psi^j(u) du
+  double u2[RULE_NODES], weight[PROFILE_MOMENTS][RULE_NODES]; // psi^j(u) over the shell du
 };
 
-static struct kernel_rule kernel_rule_new(const struct kernel *kernel) {
+static double shell(int d, double u) { return d == 1 ? 2 : d == 2 ? 2 * pi * u : 4 * pi * u * u; }
+
+static double to_the(int d, double r) { return d == 1 ? r : d == 2 ? r * r : r * r * r; }
+
+static struct kernel_rule kernel_rule_new(const struct kernel *kernel, int d) {
   struct kernel_rule rule;
   double u[RULE_NODES], du[RULE_NODES];
   special_gauss_legendre(RULE_NODES, u, du);
   for (int k = 0; k < RULE_NODES; k++) {
     rule.u2[k] = u[k] * u[k];
-    double psi = kernel_value(kernel, 2, rule.u2[k]), power = 2 * pi * u[k] * du[k];
+    double psi = kernel_value(kernel, d, rule.u2[k]), power = shell(d, u[k]) * du[k];
     for (int j = 0; j < PROFILE_MOMENTS; j++) rule.weight[j][k] = power *= psi;
   }
   return rule;
@@ -66,10 +71,13 @@ static void tabulate_beyond(struct profile *profile) {
 
 struct profile profile_new(const struct ring_mean *ring, const struct kernel *kernel,
                            double radius) {
-  struct kernel_rule rule = kernel_rule_new(kernel);
+  struct kernel_rule rule = kernel_rule_new(kernel, ring->d);
   double hi = radius * radius, centre = chebyshev_value(&ring->density, 0);
-  struct profile profile = {
-      .flux = ring->flux, .kernel = kernel, .shadow = ring->shadow, .spread = ring->spread};
+  struct profile profile = {.d = ring->d,
+                            .flux = ring->flux,
+                            .kernel = kernel,
+                            .shadow = ring->shadow,
+                            .spread = ring->spread};
   profile.exact = ring->flux * centre * lit_share(&profile);
   double mean[CHEBYSHEV_TERMS][PROFILE_MOMENTS], value[CHEBYSHEV_TERMS];
   for (int m = 0; m < CHEBYSHEV_TERMS; m++)
@@ -87,6 +95,7 @@ bool profile_find(const struct scene *scene, const struct cell *cell, const stru
                   double radius, struct arena scratch, struct profile *profile) {
   struct ring_mean ring;
   if (sphere_find(scene, cell, probe, radius, profile)) return true;
+  if (fog_find(scene, cell, probe, radius, profile)) return true;
   if (!ring_mean_find(scene, cell, probe, radius, scratch, &ring)) return false;
   *profile = profile_new(&ring, cell->kernel, radius);
   return true;
@@ -127,13 +136,25 @@ double profile_moment(const struct profile *profile, int j, double r) {
   double value = chebyshev_value(&profile->moment[j - 1], r * r);
   if (profile->shadow.shade == SHADE_LIT) value -= beyond(profile, j, r);
   if (profile->shadow.shade == SHADE_DARK) value = beyond(profile, j, r);
-  for (int k = 1; k < j; k++) value *= profile->flux / (r * r);
+  for (int k = 1; k < j; k++) value *= profile->flux / to_the(profile->d, r);
   return profile->flux * value;
 }
 
 double profile_roughness(const struct profile *profile) {
   return profile->flux * profile->flux * chebyshev_value(&profile->moment[1], 0) *
          lit_share(profile);
+}
+
+// ---- what is random beside the photons ----
+
+static int views_of_ray(const struct profile *profile, double r, struct profile_view *view) {
+  double sees = 1 - profile->blind;
+  view[0] = (struct profile_view){sees, profile_bias(profile, r) / sees, {0}};
+  for (int j = 0; j < PROFILE_MOMENTS; j++)
+    view[0].moment[j] = profile_moment(profile, j + 1, r) / sees;
+  if (profile->blind == 0) return 1;
+  view[1] = (struct profile_view){.weight = profile->blind};
+  return 2;
 }
 
 // ---- places in the pixel ----
@@ -173,11 +194,7 @@ int profile_views(const struct profile *profile, double r,
                   struct profile_view view[PROFILE_VIEWS]) {
   double lo, hi;
   edge_range(profile, &lo, &hi);
-  if (profile->spread == 0) {
-    view[0] = (struct profile_view){1, profile_bias(profile, r), {0}};
-    for (int j = 0; j < PROFILE_MOMENTS; j++) view[0].moment[j] = profile_moment(profile, j + 1, r);
-    return 1;
-  }
+  if (profile->spread == 0) return views_of_ray(profile, r, view);
   int n = 0;
   if (hi > 0) n += views_of_side(profile, fmax(lo, 0), hi, hi - lo, r, view);
   if (lo < 0) n += views_of_side(profile, lo, fmin(hi, 0), hi - lo, r, view + n);

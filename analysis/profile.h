@@ -1,7 +1,7 @@
 // Exact moments of one photon path's contribution, where theory knows the light around a probe
-// (theory 1.3, 5): E[Y^j] = g^j r^-2(j-1) times a function of r that stays finite, with g the
-// luminance one photon carries. On a plane a path arrives at most once, and the function is the
-// integral of psi^j(u) p(x + r u) du, p the density of photons on the plane per emitted path.
+// (theory 1.3, 5): E[Y^j] = g^j r^-d(j-1) times a function of r that stays finite, with g the
+// luminance one photon carries. Where a path arrives at most once, as on a plane, the function is
+// the integral of psi^j(u) p(x + r u) du, p the density of photons per emitted path.
 #ifndef ANALYSIS_PROFILE_H
 #define ANALYSIS_PROFILE_H
 
@@ -14,6 +14,7 @@
 enum { PROFILE_MOMENTS = 4 };
 
 struct profile {
+  int d;        // dimensions of what the kernel covers
   double exact; // E[Y] as r -> 0
   double flux;
   // In r^2, without the shadow: that function, for j = 1 less its limit.
@@ -22,15 +23,17 @@ struct profile {
   double density, spread;
   struct chebyshev beyond[PROFILE_MOMENTS]; // of a spread: shadow_beyond in sqrt(1 - distance)
   const struct kernel *kernel;
+  double blind; // probability that an iteration looks where there is nothing
 };
 struct profile profile_new(const struct ring_mean *, const struct kernel *, double radius);
 
-// Planes, under mirrors and shadows as well, and the inside of a sphere (analysis/sphere.h).
+// Planes, under mirrors and shadows as well, the inside of a sphere (analysis/sphere.h), and fog
+// (analysis/fog.h), there with `radius` that of the medium.
 bool profile_find(const struct scene *, const struct cell *, const struct probe *, double radius,
                   struct arena scratch, struct profile *);
 
-// What is random from iteration to iteration beside the photons: where in its pixel the probe is. A
-// view is a place, or many that are alike.
+// What is random from iteration to iteration beside the photons: where in its pixel the probe is,
+// or how far its ray gets. A view is a place, or many that are alike.
 enum { PROFILE_NODES = 16, PROFILE_VIEWS = 2 * PROFILE_NODES + 2 };
 struct profile_view {
   double weight;                  // they sum to 1

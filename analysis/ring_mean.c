@@ -109,11 +109,12 @@ static bool find_footprint(const struct neighbourhood *at, const struct cell *ce
 
 bool ring_mean_find(const struct scene *scene, const struct cell *cell, const struct probe *probe,
                     double radius, struct arena scratch, struct ring_mean *ring) {
-  if (!probe->hit || !light_is_alone(scene, cell)) return false;
+  if (!probe->hit || scene_features(scene).media || !light_is_alone(scene, cell)) return false;
   struct neighbourhood at = {
       .scene = scene, .light = &scene->light[0], .p = probe->p, .n = probe->n};
   vec_basis(at.n, &at.s, &at.t);
   ring->shadow = (struct half_shadow){.shade = SHADE_NONE, .distance = INFINITY};
+  ring->d = 2;
   ring->spread = 0;
   double reach = radius;
   if (cell->footprint ? !find_footprint(&at, cell, probe, &reach, scratch, ring)

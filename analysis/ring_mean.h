@@ -13,6 +13,7 @@
 // The density of photons around the probe, averaged over the angle, in the squared distance; a
 // shadow's edge only where it is the same everywhere, and `density` is that of the lit side.
 struct ring_mean {
+  int d;       // dimensions of that distance
   double flux; // luminance per photon
   struct chebyshev density;
   struct half_shadow shadow;

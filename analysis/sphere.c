@@ -70,7 +70,7 @@ static void chain_moments(struct chain *chain, bool from_wall, double moment[PRO
 struct profile sphere_profile(double flux, double area, double albedo, bool from_wall,
                               const struct kernel *kernel, double radius) {
   double hits = 1 / (1 - albedo), scattered = from_wall ? hits : hits - 1;
-  struct profile profile = {.exact = flux * hits / area, .flux = flux, .kernel = kernel};
+  struct profile profile = {.d = 2, .exact = flux * hits / area, .flux = flux, .kernel = kernel};
   double hi = radius * radius, value[PROFILE_MOMENTS][CHEBYSHEV_TERMS];
   struct chain chain = {.albedo = albedo};
   for (int k = 0; k < CHEBYSHEV_TERMS; k++)
@@ -169,8 +169,8 @@ bool sphere_find(const struct scene *scene, const struct cell *cell, const struc
   struct ball ball;
   double albedo, flux[3];
   bool from_wall;
-  if (!probe->hit || cell->direct != DIRECT_PHOTONS || cell->left_out || cell->footprint ||
-      !cell->integrator->photons)
+  if (!probe->hit || scene_features(scene).media || cell->direct != DIRECT_PHOTONS ||
+      cell->left_out || cell->footprint || !cell->integrator->photons)
     return false;
   if (!is_ball(scene, &ball) || !(radius < 2 * ball.radius)) return false;
   if (!find_albedo(scene, &albedo) || !find_light(scene, &ball, &from_wall, flux)) return false;

@@ -87,7 +87,7 @@ static inline double synthetic_value(const struct synthetic *s, double rho, uint
 static inline struct ring_mean synthetic_ring(const struct synthetic *s) {
   // In units of r_1: density p (1 - curvature d^2), with 1e9 emitted photons. chi(x) on [0, 1].
   double density = s->photons_1 / 1e9 / 3.14159265358979323846;
-  struct ring_mean ring = {.flux = 1 / density, .density.hi = 1};
+  struct ring_mean ring = {.d = 2, .flux = 1 / density, .density.hi = 1};
   ring.density.coefficient[0] = density * (1 - s->curvature / 2);
   ring.density.coefficient[1] = -density * s->curvature / 2;
   if (s->edge > 0) ring.shadow = (struct half_shadow){.shade = SHADE_LIT, .distance = s->edge};
@@ -105,7 +105,8 @@ static inline struct prediction synthetic_prediction(const struct synthetic *s,
   *table = family_table_new(synthetic_law(s), s->iterations, arena);
   struct family *family = arena_new(arena, struct family, 1);
   *family = family_new(table, s->alpha, arena);
-  if (!s->closed_form) return prediction_from_reference(1, s->reference_se, 2, family, arena);
+  if (!s->closed_form)
+    return prediction_from_reference(1, s->reference_se, (struct terms){.d = 2}, family, arena);
   struct ring_mean ring = synthetic_ring(s);
   struct profile profile = profile_new(&ring, kernel_find("box"), 1);
   return prediction_from_profile(&profile, 1, 1e9, 0, family, arena);

@@ -73,7 +73,8 @@ static void a_pilot_says_what_a_fit_without_closed_form_will(void **state) {
   struct results few = results_of(path_in("pilot"));
   struct results many =
       run("many", BEAM "parts: [{radius: 0.7, iterations: 100, runs: 208, seed: other}]\n");
-  struct prediction shape = prediction_from_reference(theory.truth, 0, 2, &theory.family, &arena);
+  struct prediction shape =
+      prediction_from_reference(theory.truth, 0, (struct terms){.d = 2}, &theory.family, &arena);
   struct outlook piloted = outlook_new(&shape, &few.series[0], arena);
   struct fit fit;
   fit_predicted(&many, &shape, &arena, &fit);
