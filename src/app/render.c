@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "log/cell_json.h"
 #include "run/interrupt.h"
+#include "walk/media_check.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -63,6 +64,7 @@ static bool measure_film(const struct cell *cell, const struct scene *scene, con
   struct estimator *estimator = arena_new(cli->arena, struct estimator, 1);
   struct bvh *bvh =
       bvh_build(scene, (struct bvh_options){.threads = plan_threads(&cli->options)}, cli->arena);
+  if (!media_check(scene, bvh, *cli->arena, problem)) return false;
   *measure = plan_measurement(cell, scene, bvh, cli->options.skip_off);
   measure->pixel = plan_film(scene, &measure->n_points, cli->arena, problem);
   measure->estimator = estimator;

@@ -7,6 +7,7 @@
 #include "run/look.h"
 #include "run/resolved.h"
 #include "walk/eye.h"
+#include "walk/media_check.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -44,6 +45,7 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
   if (!scene_read_with(path, options, arena, &loaded->scene, problem)) return NULL;
   loaded->bvh = bvh_build(&loaded->scene,
                           (struct bvh_options){.threads = plan_threads(&plan->options)}, arena);
+  if (!media_check(&loaded->scene, loaded->bvh, *arena, problem)) return NULL;
   plan->n_scenes++;
   return loaded;
 }

@@ -45,7 +45,7 @@ struct pass {
   struct arena *arena;
 };
 
-static uint32_t starts_in(const struct scene *scene, const struct light *light,
+uint32_t photons_start_in(const struct scene *scene, const struct light *light,
                           const struct ray *ray) {
   if (ray->leaving == PRIMITIVE_NONE) return light->medium;
   struct surface surface = scene_surface(scene, ray, (struct hit){0, ray->leaving});
@@ -66,7 +66,7 @@ void photons_emit(struct walk *walk) {
     light->type->emit(scene, light, u, &emission);
     walk_start(walk, j, emission.ray);
     walk->kind[j] = LIGHT_PATH_DIRECT;
-    if (walk->medium) walk->medium[j] = starts_in(scene, light, &emission.ray);
+    if (walk->medium) walk->medium[j] = photons_start_in(scene, light, &emission.ray);
     for (int c = 0; c < walk->n_channels; c++)
       walk->throughput[c][j] = emission.flux[c] / light->probability;
   }

@@ -41,6 +41,9 @@ struct photon_filter {
 // light leaves it.
 void photons_emit(struct walk *);
 
+// The medium in which a photon begins that the light emits along this ray.
+uint32_t photons_start_in(const struct scene *, const struct light *, const struct ray *);
+
 // Where photons go: emptied first, grown in the arena. Zeroed photons are ready for use.
 struct photon_sink {
   struct photons *photons; // NULL: nobody asks
