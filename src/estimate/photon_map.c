@@ -87,6 +87,7 @@ void photon_map_emit(struct photon_map *map, uint64_t i, const double r[POINT_KI
   struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
   map->any_radius = r[ON_SURFACE] == INFINITY;
   struct photon_sinks sinks = photon_map_sinks(map, r);
+  sinks.beams = map->beams;
   map->walk->key = rng_key(measure->seed, map->run, RNG_PHOTONS);
   walk_begin(map->walk, measure->seed, map->run, i);
   photons_trace(map->walk, &pass, &sinks, map->arena);

@@ -28,6 +28,7 @@ struct photon_map {
   struct eye_point *point; // [measure->n_points]
   int sets;                // ppm: the points are this many sets, each of all pixels; else 1
   struct photon_field field[POINT_KINDS]; // the first measurement_kinds of them
+  struct beams *beams;                    // where a pass leaves them in media; NULL: nobody asks
   bool any_radius; // the photons are in the fields' trees, else in their grids
   struct gather gather;
   struct disc *disc; // [n_estimators] scratch

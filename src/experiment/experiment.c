@@ -181,6 +181,8 @@ static const char *settle_radius(struct cell *cell) {
 const char *cell_settle(struct cell *cell) {
   if (cell->integrator->fixed && strcmp(cell->law->name, "fixed") != 0)
     return "law: all iterations of this integrator have the same radius, take fixed or none";
+  if (cell->integrator->only_photons && cell->direct == DIRECT_NEE)
+    return "direct: this integrator has no next-event estimation, take photons";
   return cell->integrator->photons ? settle_radius(cell) : NULL;
 }
 

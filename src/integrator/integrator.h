@@ -21,6 +21,7 @@ struct integrator_type {
   bool blind_to_mirrored; // leaves out surfaces seen in mirrors and through clear glass
   bool takes_reference; // reference radii other than global
   bool takes_k;         // the k nearest photons instead of a radius
+  bool only_photons;    // direct light too: no next-event estimation
   bool fixed;           // all iterations have the same radius: no law but fixed
   int volume_dimension; // of its kernels in media: 3 of points, 1 of beams; 0: it has none there
   // Whether it can measure the scene, at pixel footprints or centres; else a problem. NULL: any.

@@ -13,7 +13,8 @@ enum rng_purpose {
   RNG_TEST,
   RNG_TIME,
   RNG_RADII,
-  RNG_RESAMPLE
+  RNG_RESAMPLE,
+  RNG_CROSSINGS
 };
 
 struct rng_key {

@@ -73,6 +73,10 @@ static void flight_from(struct walk *walk, int j, double u0, double u1) {
 void flight_path(struct walk *walk, int j) {
   double u0, u1;
   if (walk->medium[j] == MEDIUM_NONE) return;
+  if (walk->through) {
+    walk->through(walk->through_data, walk, j);
+    return;
+  }
   random_pair(walk, walk->path[j], BETWEEN_FLIGHT, walk->vertex, &walk->flights[j], &u0, &u1);
   flight_from(walk, j, u0, u1);
 }
@@ -84,6 +88,10 @@ void flight_all(struct walk *walk) {
     any |= walk->medium[j] != MEDIUM_NONE;
   }
   if (!any) return;
+  if (walk->through) {
+    for (int j = 0; j < walk->n; j++) flight_path(walk, j);
+    return;
+  }
   walk_random(walk, 0, pair_between(BETWEEN_FLIGHT, walk->vertex, 0));
   for (int j = 0; j < walk->n; j++) {
     if (walk->medium[j] == MEDIUM_NONE) continue;
@@ -92,21 +100,34 @@ void flight_all(struct walk *walk) {
   }
 }
 
+// emitted: the integral of emission T over the distance, (1 - T) emission / sigma_t.
 static void attenuate_uniform(const struct medium *medium, int n_channels, double distance,
-                              double value[3]) {
+                              double value[3], double *emitted) {
   struct medium_point at;
   medium->type->at(medium, (struct vec){0}, &at);
   for (int c = 0; c < n_channels; c++) {
     double sigma_t = at.sigma_a[c] + at.sigma_s[c];
-    if (sigma_t > 0) value[c] *= num_exp(-sigma_t * distance);
+    if (!(sigma_t > 0)) continue; // what absorbs nothing emits nothing
+    double left = num_exp(-sigma_t * distance);
+    if (emitted) emitted[c] += value[c] * (1 - left) * at.emission[c] / sigma_t;
+    value[c] *= left;
   }
 }
 
-void flight_shadow(const struct walk *walk, uint32_t row, const struct ray *ray, double distance,
-                   uint64_t path, int vertex, uint32_t *flights, double value[3]) {
+// At a tentative collision, which stands for 1 / majorant of the ray.
+static void attenuate_at(const struct medium_point *at, int n_channels, double majorant,
+                         double value[3], double *emitted) {
+  for (int c = 0; c < n_channels; c++) {
+    if (emitted) emitted[c] += value[c] * at->emission[c] / majorant;
+    value[c] *= 1 - (at->sigma_a[c] + at->sigma_s[c]) / majorant;
+  }
+}
+
+void flight_along(const struct walk *walk, uint32_t row, const struct ray *ray, double distance,
+                  uint64_t path, int vertex, uint32_t *flights, double value[3], double *emitted) {
   const struct medium *medium = &walk->scene->medium[row];
   if (medium->type->uniform) {
-    attenuate_uniform(medium, walk->n_channels, distance, value);
+    attenuate_uniform(medium, walk->n_channels, distance, value, emitted);
     return;
   }
   double end, majorant, t = 0;
@@ -124,7 +145,11 @@ void flight_shadow(const struct walk *walk, uint32_t row, const struct ray *ray,
     struct medium_point at;
     t = next;
     medium->type->at(medium, vec_along(ray->o, ray->d, t), &at);
-    for (int c = 0; c < walk->n_channels; c++)
-      value[c] *= 1 - (at.sigma_a[c] + at.sigma_s[c]) / majorant;
+    attenuate_at(&at, walk->n_channels, majorant, value, emitted);
   }
+}
+
+void flight_shadow(const struct walk *walk, uint32_t row, const struct ray *ray, double distance,
+                   uint64_t path, int vertex, uint32_t *flights, double value[3]) {
+  flight_along(walk, row, ray, distance, path, vertex, flights, value, NULL);
 }

@@ -20,4 +20,9 @@ void flight_all(struct walk *);
 void flight_shadow(const struct walk *, uint32_t medium, const struct ray *, double distance,
                    uint64_t path, int vertex, uint32_t *flights, double value[3]);
 
+// The same for a ray that the eye looks along: adds to emitted[c] the medium's emission on the way,
+// weighted with what is left of value[c] there. NULL: nobody asks.
+void flight_along(const struct walk *, uint32_t medium, const struct ray *, double distance,
+                  uint64_t path, int vertex, uint32_t *flights, double value[3], double *emitted);
+
 #endif

@@ -151,12 +151,8 @@ static void empty(const struct photon_sink *sink, const struct walk *walk) {
   sink->photons->n_channels = walk->n_channels;
 }
 
-void photons_trace(struct walk *walk, const struct photon_pass *of, const struct photon_sinks *to,
-                   struct arena *arena) {
-  struct pass pass = {of, to, arena};
-  empty(&to->surface, walk);
-  empty(&to->volume, walk);
-  if (walk->scene->n_lights == 0) return;
+static void trace(struct walk *walk, const struct pass *pass) {
+  const struct photon_pass *of = pass->of;
   for (uint64_t first = of->first; first < of->n_emitted; first += WALK_BATCH) {
     uint64_t left = of->n_emitted - first;
     walk->n = left < WALK_BATCH ? (int)left : WALK_BATCH;
@@ -166,10 +162,20 @@ void photons_trace(struct walk *walk, const struct photon_pass *of, const struct
       walk_trace(walk);
       while (walk->crossing.n > 0) {
         walk_cross(walk);
-        store_passed(walk, &pass);
+        store_passed(walk, pass);
       }
       walk_drop_escaped(walk);
-      meet(walk, &pass);
+      meet(walk, pass);
     }
   }
+}
+
+void photons_trace(struct walk *walk, const struct photon_pass *of, const struct photon_sinks *to,
+                   struct arena *arena) {
+  struct pass pass = {of, to, arena};
+  empty(&to->surface, walk);
+  empty(&to->volume, walk);
+  if (to->beams) beams_begin(to->beams, walk, of->first_vertex, arena);
+  if (walk->scene->n_lights > 0) trace(walk, &pass);
+  if (to->beams) beams_end(walk);
 }

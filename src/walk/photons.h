@@ -2,7 +2,7 @@
 #ifndef WALK_PHOTONS_H
 #define WALK_PHOTONS_H
 
-#include "walk/walk.h"
+#include "walk/beams.h"
 
 // Stored photons in the order of (batch, vertex, path), which no thread count can change.
 struct photons {
@@ -58,6 +58,7 @@ struct photon_sinks {
   //   sigma_s(x) / n_emitted * sum k_r(x_p - x) f(w, w_p) flux_p,
   // k_r in scene units^-3 (theory 1.1, with sigma_t of each photon's own place).
   struct photon_sink volume;
+  struct beams *beams; // emptied first, grown in the arena; NULL: nobody asks (walk/beams.h)
 };
 
 // One pass: walk->key and walk->iteration are set by the caller.

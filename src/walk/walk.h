@@ -49,6 +49,10 @@ struct walk {
   // as it stands; NULL: nobody asks.
   void (*flown)(void *data, const struct walk *, int j, double t0, double t1);
   void *flown_data;
+  // Takes path j through a medium to its hit in place of a flight, which may end before; NULL:
+  // paths fly.
+  void (*through)(void *data, struct walk *, int j);
+  void *through_data;
 
   double *u[4][2]; // scratch: pairs of random numbers
   struct shadow {  // scratch of connect_lights, [WALK_BATCH] each
