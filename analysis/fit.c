@@ -32,9 +32,10 @@ static enum verdict row_verdict(const struct fit_row *row) {
 }
 
 // A row that speaks against theory without contradicting it: a bias that theory says must show
-// (twice the threshold of detection) and does not, or a lack of fit.
+// (twice the threshold of detection) and does not, a lack of fit, or discs too large to tell.
 static bool is_doubtful(const struct fit_row *row) {
-  if (row->verdict == VERDICT_NOT_RESOLVABLE) return rejects(row, true);
+  if (row->verdict == VERDICT_NOT_RESOLVABLE)
+    return rejects(row, true) || row->why == fit_large_discs;
   return row->verdict == VERDICT_NOT_DETECTED && row->expected_snr >= 2 * fit_detection_snr;
 }
 
@@ -67,6 +68,18 @@ static const char *why_unresolved(const struct fit_row *row) {
                                              : "too little data (photonlab plan: how many runs)";
 }
 
+// A rate that differs only by the first discs says nothing of the limit.
+static void set_rejections(struct fit_row *row, double level) {
+  for (int t = 0; t < row->n_tests; t++) {
+    struct fit_test *test = &row->test[t];
+    if (strcmp(test->name, "rate") == 0 && test->p < level && row->later_p >= level) {
+      test->statistic = row->later_deviate, test->p = row->later_p;
+      row->resolved = false, row->why = fit_large_discs;
+    }
+    test->rejects = test->p < level;
+  }
+}
+
 static void leave_unjudged(struct fit *fit) {
   for (int r = 0; r < fit->n_rows; r++) fit->row[r].verdict = VERDICT_NONE;
   fit->verdict = VERDICT_NONE;
@@ -79,7 +92,7 @@ static void judge(struct fit *fit) {
   fit->test_level = special_sidak(fit->level, n_tests);
   for (int r = 0; r < fit->n_rows; r++) {
     struct fit_row *row = &fit->row[r];
-    for (int t = 0; t < row->n_tests; t++) row->test[t].rejects = row->test[t].p < fit->test_level;
+    set_rejections(row, fit->test_level);
     row->verdict = row_verdict(row);
     if (!row->why) row->why = why_unresolved(row);
     if (row->verdict == VERDICT_NOT_DETECTED || row->verdict == VERDICT_NOT_RESOLVABLE)

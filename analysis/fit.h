@@ -43,6 +43,10 @@ struct fit_row {
   double snr, expected_snr, upper_bound; // bias: |b_1| / SE, theory's b_1 / SE, 95 %
   struct fit_test test[FIT_TESTS];
   int n_tests;
+  // The rate's deviate from theory and its p where the first discs are left out, of a rate without
+  // closed form that differs from theory's; p NAN: not asked for. Where these do not reject, the
+  // test says them.
+  double later_deviate, later_p;
   int looks; // at the runs, each of which could have been the last
   bool resolved, detected;
   enum verdict verdict;

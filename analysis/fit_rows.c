@@ -8,6 +8,7 @@
 const char fit_no_reference[] = "no reference";
 const char fit_dark_reference[] = "the reference found no light, but photons did";
 const char fit_noisy_reference[] = "the reference is too noisy (photonlab plan: how precise)";
+const char fit_large_discs[] = "the first discs are too large for a rate (smaller radius)";
 static const double largest_rate_se = 0.1, widest_interval = 0.3;
 
 static void add_test(struct fit_row *row, const char *name, double statistic, double p) {
@@ -51,6 +52,7 @@ static struct fit_row *new_row(const struct results *results, const struct serie
       .snr = NAN,
       .expected_snr = NAN,
       .upper_bound = NAN,
+      .later_p = NAN,
   };
   return row;
 }
@@ -108,9 +110,54 @@ static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
     add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, b->dof);
 }
 
+// ---- whether a rate differs in the limit ----
+
+// Theory's first terms are a limit. That the first discs, too large for them, bend a curve is no
+// contradiction, so a rate that differs must do so without them as well: from where r^2 is half the
+// first one's, or in the later half.
+static bool leave_first_discs(const struct fit_row *row, const struct prediction *theory,
+                              struct prediction *later) {
+  const double usual_level = 0.01; // no test's is above
+  if (row->closed_form || !theory->rest || !row->resolved) return false;
+  if (!(row->test[0].p < usual_level)) return false;
+  *later = *theory;
+  uint64_t half = theory->first + (theory->n - theory->first) / 2;
+  while (later->first < half &&
+         theory->family.rho[later->first] > theory->family.rho[theory->first] / 2)
+    later->first++;
+  return true;
+}
+
+static void set_later(struct fit_row *row, double deviate, double p) {
+  row->later_deviate = isfinite(p) ? deviate : 0;
+  row->later_p = isfinite(p) ? p : 1;
+}
+
 // The rate's own variance where it is known well, else theory's.
 static const double *weights_of(const struct variance_fit *v) {
   return v->rate_se <= largest_rate_se ? v->variance : v->expected;
+}
+
+static void variance_later(const struct fit_estimators *by, const struct series *series,
+                           const struct prediction *theory, struct arena scratch,
+                           struct fit_row *row) {
+  struct prediction later;
+  if (!leave_first_discs(row, theory, &later)) return;
+  struct variance_fit v = fit_variance(&later, series->iteration, &scratch);
+  if (!v.why && by) v.why = by->variance(&later, series, weights_of(&v), &v, scratch);
+  double z = v.why ? NAN : (v.rate - row->rate_theory) / v.rate_se;
+  set_later(row, z, special_two_sided(z));
+}
+
+static void bias_later(const struct fit_estimators *by, const struct series *series,
+                       const struct prediction *theory, const struct variance_fit *v,
+                       struct arena scratch, struct fit_row *row) {
+  struct prediction later;
+  if (!leave_first_discs(row, theory, &later)) return;
+  struct bias_fit b = fit_bias(&later, series->iteration, v, weights_of(v), &scratch);
+  if (b.measured && by) by->bias(&later, series, weights_of(v), v, &b, scratch);
+  double t = b.measured && b.rate_found ? b.rate_deviate : NAN;
+  set_later(row, t, special_t_two_sided(t, v->dof));
 }
 
 // Whether half the variance of the bias' coefficient is the reference's.
@@ -149,6 +196,7 @@ static void fit_bias_series(const struct fit_estimators *by, const struct result
   struct bias_fit said = b;
   if (b.measured && by) by->bias(theory, series, weights_of(v), v, &said, scratch);
   bias_row(&said, v, theory, row);
+  bias_later(by, series, theory, v, scratch, row);
   if (!row->why && !row->resolved && reference_dominates(theory, series, v, &b, scratch))
     row->why = fit_noisy_reference;
   if (theory->independent && said.measured) {
@@ -208,6 +256,7 @@ void fit_series_by(const struct fit_estimators *by, const struct results *result
     if (!v.why && by) said.why = by->variance(theory, series, weights_of(&v), &said, scratch);
     row->why = said.why;
     variance_row(&said, theory, row);
+    variance_later(by, series, theory, scratch, row);
     if (theory->independent) add_deviate(row, "independence", dependence);
     if (theory->independent && !said.why && said.lack_of_fit.dof >= 1)
       add_test(row, "lack-of-fit", said.lack_of_fit.value,

@@ -11,6 +11,7 @@ static const double fit_detection_snr = 3;
 extern const char fit_no_reference[];    // why a bias has no fit
 extern const char fit_dark_reference[];
 extern const char fit_noisy_reference[]; // or no rate
+extern const char fit_large_discs[];
 
 // What is said of rate and coefficient instead of what the fits of the iterations say, whose
 // `weights`, [n] variances of one iteration, the data have.

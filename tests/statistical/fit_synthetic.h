@@ -17,6 +17,7 @@ struct synthetic {
   uint64_t iterations, runs;
   double photons_1; // lambda_1, expected in the first disc
   double curvature; // irradiance 1 - curvature (distance / r_1)^2
+  double peak;      // more than 0: irradiance (1 + peak d^2)^-2, as under a Lambertian light
   double edge;      // distance of a shadow's edge from the probe in the light, in r_1; 0: none
   bool gaussian;    // normal values instead of counts
   // What is planted: the squared radius the defect uses, in units of theory's first, at iteration i
@@ -75,6 +76,7 @@ static inline double synthetic_value(const struct synthetic *s, double rho, uint
                                      struct stream *stream) {
   if (s->black) return 0;
   double r2 = s->r2 ? s->r2(s->alpha, rho, i) : rho, mean = 1 - s->curvature * r2 / 2;
+  if (s->peak > 0) mean = 1 / (1 + s->peak * r2);
   if (s->edge > 0) mean -= synthetic_beyond(s->edge, sqrt(r2));
   double photons = s->photons_1 * r2 * mean, value;
   if (s->gaussian)
