@@ -145,8 +145,8 @@ static void variance_later(const struct fit_estimators *by, const struct series 
   if (!leave_first_discs(row, theory, &later)) return;
   struct variance_fit v = fit_variance(&later, series->iteration, &scratch);
   if (!v.why && by) v.why = by->variance(&later, series, weights_of(&v), &v, scratch);
-  double z = v.why ? NAN : (v.rate - row->rate_theory) / v.rate_se;
-  set_later(row, z, special_two_sided(z));
+  double t = v.why ? NAN : v.rate_deviate;
+  set_later(row, t, special_t_two_sided(t, v.deviate_dof));
 }
 
 static void bias_later(const struct fit_estimators *by, const struct series *series,
@@ -157,7 +157,7 @@ static void bias_later(const struct fit_estimators *by, const struct series *ser
   struct bias_fit b = fit_bias(&later, series->iteration, v, weights_of(v), &scratch);
   if (b.measured && by) by->bias(&later, series, weights_of(v), v, &b, scratch);
   double t = b.measured && b.rate_found ? b.rate_deviate : NAN;
-  set_later(row, t, special_t_two_sided(t, v->dof));
+  set_later(row, t, special_t_two_sided(t, b.dof));
 }
 
 // Whether half the variance of the bias' coefficient is the reference's.
