@@ -6,16 +6,19 @@
 #include <stdlib.h>
 
 void resample_runs(int b, int runs, double *count, double *normal) {
+  enum { AT_ONCE = 64 };
   struct rng_key key = rng_key(rng_hash_name("bootstrap"), 0, RNG_RESAMPLE);
-  double u0, u1;
+  uint64_t draw[AT_ONCE], last = (uint64_t)runs;
+  double u0[AT_ONCE], u1[AT_ONCE];
   for (int k = 0; k < runs; k++) count[k] = 0;
-  for (uint64_t k = 0; k < (uint64_t)runs; k++) {
-    rng_fill(key, (uint64_t)b, &k, 1, 0, &u0, &u1);
-    count[(int)(u0 * runs)]++;
+  for (int from = 0; from < runs; from += AT_ONCE) {
+    int n = runs - from < AT_ONCE ? runs - from : AT_ONCE;
+    for (int j = 0; j < n; j++) draw[j] = (uint64_t)(from + j);
+    rng_fill(key, (uint64_t)b, draw, n, 0, u0, u1);
+    for (int j = 0; j < n; j++) count[(int)(u0[j] * runs)]++;
   }
-  uint64_t last = (uint64_t)runs;
-  rng_fill(key, (uint64_t)b, &last, 1, 0, &u0, &u1);
-  *normal = sqrt(-2 * log(1 - u0)) * cos(2 * 3.14159265358979323846 * u1);
+  rng_fill(key, (uint64_t)b, &last, 1, 0, u0, u1);
+  *normal = sqrt(-2 * log(1 - u0[0])) * cos(2 * 3.14159265358979323846 * u1[0]);
 }
 
 // The expectation of the squared deviations' mean is (1 - 1/K) of the runs' own, and so is that of
