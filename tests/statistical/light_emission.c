@@ -61,6 +61,13 @@ static void cosine_cdf(double x, double y, double *a, double *b) {
   *b = (y + 1.7) / 3.4;
 }
 
+// Half width 0.4.
+static void slab_cdf(double x, double y, double *a, double *b) {
+  double v = y / 1.7;
+  *a = (2 + 3 * v - v * v * v) / 4;
+  *b = (x + 0.4) / 0.8;
+}
+
 static void check_beam(const char *text, const char *name, distribution *cdf) {
   struct scene scene = light_scene(text, &arena);
   struct stream stream = stream_begin(name);
@@ -89,6 +96,9 @@ static void test_beams(void **state) {
   check_beam(BEAM("\"string profile\" \"cosine\" \"float radius\" 1.7 \"float wavelength\" 0.9 "
                   "\"vector3 across\" [0.3 0.9 0.2]"),
              "light cosine beam", cosine_cdf);
+  check_beam(BEAM("\"string profile\" \"slab\" \"float radius\" 1.7 \"float width\" 0.8 "
+                  "\"vector3 across\" [0.3 0.9 0.2]"),
+             "light slab beam", slab_cdf);
 }
 
 // The plane's bounding sphere: centre 0, R = 4 sqrt 2.
@@ -120,6 +130,7 @@ static void test_flux(void **state) {
       BEAM("\"string profile\" \"quadratic\" \"float radius\" 1.7"),
       BEAM("\"string profile\" \"gaussian\" \"float sigma\" 0.6"),
       BEAM("\"string profile\" \"cosine\" \"float radius\" 1.7 \"float wavelength\" 0.9"),
+      BEAM("\"string profile\" \"slab\" \"float radius\" 1.7"),
       "LightSource \"point\" \"point3 from\" [1 2 3] \"rgb I\" [2 2 2]" LIGHT_PLANE,
       "LightSource \"point\" \"point3 from\" [1 2 3] \"point3 to\" [1.36 1.52 2.2] \"rgb I\" "
       "[2 2 2] \"string emission\" \"lambertian\"" LIGHT_PLANE,

@@ -139,6 +139,27 @@ static void test_grating_blur(void **state) {
     }
 }
 
+// d^2/dy^2: -3 / (2 a^3 w) Phi; in x nothing. Along (4, -3) / 5, as x runs along (3, 4) / 5.
+static void test_slab(void **state) {
+  (void)state;
+  struct scene scene =
+      light_scene("LightSource \"beam\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] "
+                  "\"string profile\" \"slab\" \"float radius\" 0.7 \"float width\" 1.9 "
+                  "\"float power\" 2.385 \"vector3 across\" [3 4 7]" LIGHT_PLANE,
+                  &arena);
+  double a = 0.7, peak = 0.75 * 2.385 / (a * 1.9);
+  for (double x = -0.8; x < 0.81; x += 0.2)
+    for (double y = -0.5; y < 0.51; y += 0.25) {
+      struct vec p = vec(0.6 * x + 0.8 * y, 0.8 * x - 0.6 * y, 0);
+      assert_near(light_irradiance(&scene, p, up), peak * (1 - y * y / (a * a)), 1e-14);
+      assert_near(laplacian(&scene, p, up, 0.1), -2 * peak / (a * a), 1e-11);
+      double side = 0.95 - fabs(x), edge = a - fabs(y);
+      assert_near(light_form(&scene, p, up).clear_radius, side < edge ? side : edge, 1e-14);
+    }
+  assert_near(light_irradiance(&scene, vec(0.6 * 0.96, 0.8 * 0.96, 0), up), 0, 0);
+  assert_near(light_irradiance(&scene, vec(0.8 * 0.71, -0.6 * 0.71, 0), up), 0, 0);
+}
+
 #define LAMBERTIAN                                                                                 \
   "LightSource \"point\" \"point3 from\" [0 0 1.3] \"point3 to\" [0 0 0] \"string emission\" "     \
   "\"lambertian\" \"float power\" 2.385" LIGHT_PLANE
@@ -318,6 +339,8 @@ int main(void) {
        NULL},
       {"the flux of a grating of 5.95 periods is Phi", test_grating_flux, NULL, NULL, NULL},
       {"a disc blurs the grating by 2 J1(kappa r) / (kappa r)", test_grating_blur, NULL, NULL,
+       NULL},
+      {"the slab beam's Laplacian is -3 Phi / (2 a^3 w), and it has sides", test_slab, NULL, NULL,
        NULL},
       {"the Lambertian point light has theory's box mean anywhere", test_lambertian, NULL, NULL,
        NULL},

@@ -11,6 +11,9 @@
 //                  `float contrast` m     kappa = 2 pi / wavelength; wavelength is required, m = 1
 //                  `vector3 across`       the direction of x (its part perpendicular to the axis);
 //                                         default 1 0 0
+//     "slab"       `float radius` a       3 Phi / (4 a w) (1 - y^2 / a^2) for |y| < a, |x| < w / 2,
+//                  `float width` w        y perpendicular to x; default 2 a
+//                  `vector3 across`       as above
 // `from`, `to` and `across` follow the current transformation; lengths are in world units.
 #include "scene/light/light.h"
 
@@ -18,6 +21,7 @@ struct beam {
   struct vec from, axis, x, y; // orthonormal; x and y span the cross-section
   const struct profile *profile;
   double size;                 // radius, sigma or half side
+  double half_width;           // along x, of a slab or grating
   double wavelength, contrast; // of the grating, and
   double integral;             // its integral from 0 to the edge, in periods
 };
@@ -117,6 +121,7 @@ static double grating_integral(double m, double v, double *slope) {
 static void cosine_read(struct scene_builder *builder, struct params *params, struct beam *beam) {
   disc_read(builder, params, beam);
   read_across(builder, params, beam);
+  beam->half_width = beam->size;
   beam->wavelength = light_positive(params, "wavelength", 0); // no default
   beam->contrast = params_float(params, "contrast", 1);
   if (!(beam->contrast >= 0 && beam->contrast <= 1))
@@ -156,19 +161,43 @@ static void cosine_sample(const struct beam *beam, double u0, double u1, double 
   *y = (2 * u1 - 1) * beam->size;
 }
 
-static double cosine_clear(const struct beam *beam, double x, double y) {
-  double dx = fabs(x) - beam->size, dy = fabs(y) - beam->size;
+static double rectangle_clear(const struct beam *beam, double x, double y) {
+  double dx = fabs(x) - beam->half_width, dy = fabs(y) - beam->size;
   if (dx < 0 && dy < 0) return -(dx > dy ? dx : dy);
   dx = dx > 0 ? dx : 0;
   dy = dy > 0 ? dy : 0;
   return sqrt(dx * dx + dy * dy);
 }
 
+// ---- slab ----
+
+static void slab_read(struct scene_builder *builder, struct params *params, struct beam *beam) {
+  disc_read(builder, params, beam);
+  read_across(builder, params, beam);
+  beam->half_width = light_positive(params, "width", 2 * beam->size) / 2;
+}
+
+static double slab_density(const struct beam *beam, double x, double y) {
+  double v = y / beam->size;
+  if (!(fabs(x) < beam->half_width && fabs(v) < 1)) return 0;
+  return 0.375 * (1 - v) * (1 + v) / (beam->size * beam->half_width);
+}
+
+// v = y / a with (2 + 3 v - v^3) / 4 = u is 2 cos phi, cos 3 phi = 1 - 2 u, phi from 2 pi / 3 to
+// pi / 3.
+static void slab_sample(const struct beam *beam, double u0, double u1, double *x, double *y) {
+  double sine, cosine;
+  num_sincos_turns((1 - num_acos(1 - 2 * u0) / (2 * light_pi)) / 3, &sine, &cosine);
+  *x = (2 * u1 - 1) * beam->half_width;
+  *y = 2 * cosine * beam->size;
+}
+
 static const struct profile profiles[] = {
     {"uniform", disc_read, uniform_density, uniform_sample, disc_clear},
     {"quadratic", disc_read, quadratic_density, quadratic_sample, disc_clear},
     {"gaussian", gaussian_read, gaussian_density, gaussian_sample, gaussian_clear},
-    {"cosine", cosine_read, cosine_density, cosine_sample, cosine_clear},
+    {"cosine", cosine_read, cosine_density, cosine_sample, rectangle_clear},
+    {"slab", slab_read, slab_density, slab_sample, rectangle_clear},
 };
 
 static const struct profile *profile_find(const char *name) {
@@ -196,7 +225,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
   if (!beam->profile)
     return params_complain(
         params, "profile",
-        "\"%s\" is no beam profile; there are uniform, quadratic, gaussian, cosine", name);
+        "\"%s\" is no beam profile; there are uniform, quadratic, gaussian, cosine, slab", name);
   light_from_to(builder, params, &beam->from, &beam->axis);
   vec_basis(beam->axis, &beam->x, &beam->y);
   read_power(builder, params, light->power);
@@ -256,7 +285,7 @@ static bool closed_form(const struct scene *scene, const struct light *light, st
 
 const struct light_type light_beam = {
     .name = "beam",
-    .about = "parallel photons with a uniform, quadratic, gaussian or cosine profile (ours)",
+    .about = "parallel photons with a uniform, quadratic, gaussian, cosine or slab profile (ours)",
     .delta = true,
     .read = read,
     .emit = emit,
