@@ -390,6 +390,27 @@ static void ppm_is_refused_where_something_moves(void **state) {
   assert_planned(&scene, cell_of("sppm", "hachisuka", 0.5), NULL);
 }
 
+static void what_knows_no_media_is_refused_where_there_are_some(void **state) {
+  (void)state;
+  struct scene scene = scene_of(
+      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nLightSource \"point\"\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+  struct cell nearest = cell_of("photonmap", "fixed", 1),
+              local = cell_of("probabilistic", "fixed", 1);
+  assert_planned(&scene, nearest, NULL);
+  assert_planned(&scene, local, NULL);
+  nearest.k = 10;
+  assert_planned(&scene, nearest, "participating media, and `k` (the nearest photons) finds radii");
+  for (int k = 1; k < n_reference_radii; k++) {
+    local.reference_radius = &reference_radii[k];
+    assert_planned(&scene, local, "finds radii on surfaces only");
+  }
+  assert_planned(&scene, cell_of("light", "fixed", 1), "light connects surfaces only");
+  assert_planned(&scene, cell_of("ppm", "hachisuka", 0.5), "take sppm or probabilistic");
+  assert_planned(&scene, cell_of("path", "fixed", 1), NULL);
+}
+
 // Each test takes the memory from its start again.
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, NULL)
 static struct arena whole;
@@ -414,6 +435,7 @@ int main(void) {
       TEST(the_mean_of_equal_hit_points_is_one_of_them),
       TEST(combinations_that_make_no_sense_are_refused),
       TEST(ppm_is_refused_where_something_moves),
+      TEST(what_knows_no_media_is_refused_where_there_are_some),
   };
   return cmocka_run_group_tests_name("local", tests, NULL, NULL);
 }
