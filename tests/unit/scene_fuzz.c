@@ -32,6 +32,11 @@ static const char *const seeds[] = {
     "MakeNamedMaterial \"late\" \"string type\" \"diffuse\" Shape \"disk\" \"texture alpha\" "
     "\"t\"\n"
     "LightSource \"point\"\n",
+    "MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" "
+    "[1 2] \"point3 p0\" [-1 -1 -1] \"float scale\" 2 MediumInterface \"\" \"a\" WorldBegin "
+    "Attribute \"medium\" \"float g\" .5 MakeNamedMedium \"b\" \"string type\" "
+    "\"homogeneous\" \"rgb sigma_a\" [1 2 3] \"float Lescale\" 3\n"
+    "Material \"interface\" MediumInterface \"b\" Shape \"sphere\" LightSource \"point\"\n",
 };
 
 // What an edit may put in: bytes alone rarely make a different token.
