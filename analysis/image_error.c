@@ -5,13 +5,13 @@
 
 static double mse(double x, double r) { return (x - r) * (x - r); }
 
-static double relmse(double x, double r) { return (x - r) * (x - r) / (r * r + 1e-4); }
+static double relmse(double x, double r) { return (x - r) * (x - r) / (r * r + 0.01); }
 
 static double smape(double x, double r) { return x == r ? 0 : fabs(x - r) / (fabs(x) + fabs(r)); }
 
 const struct image_metric image_metrics[IMAGE_METRICS] = {
     {"mse", "mean of (x - r)^2", mse},
-    {"relmse", "mean of (x - r)^2 / (r^2 + 1e-4)", relmse},
+    {"relmse", "mean of (x - r)^2 / (r^2 + 0.01)", relmse},
     {"smape", "mean of |x - r| / (|x| + |r|)", smape},
 };
 

@@ -1,7 +1,7 @@
 // How far an image is from its reference. Means over the pixels and the channels R, G, B of, x the
 // image's value and r the reference's,
 //   mse     (x - r)^2                     radiance^2
-//   relmse  (x - r)^2 / (r^2 + 1e-4)      relative mean square error; radiances near 1 assumed
+//   relmse  (x - r)^2 / (r^2 + 0.01)      relative mean square error (Rousselle et al. 2012)
 //   smape   |x - r| / (|x| + |r|)         symmetric mean absolute error, in [0, 1]; 0 where both
 //   are 0
 // No pixel is left out or clamped. Pixels of one image share photons, so a spread over pixels says
