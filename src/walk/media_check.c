@@ -89,13 +89,15 @@ static bool may_leave(struct check *check, const struct traveller *way) {
   const struct light *light = light_at_infinity(scene);
   if (way->medium == MEDIUM_NONE || !light) return true;
   struct vec o = way->ray.o, d = way->ray.d;
-  problem_set(
-      &check->said,
-      "%s: nothing of the %s light arrives through %s, which has no end: a ray from %s "
-      "leaves the scene from (%g, %g, %g) along (%g, %g, %g); enclose the medium in shapes of "
-      "material \"interface\"",
-      scene->path, light->type->name, name_of(scene, way->medium).text, check->from, o.x, o.y, o.z,
-      d.x, d.y, d.z);
+  const char *why = scene->medium[way->medium].type->uniform
+                        ? "nothing of it arrives through the unbounded medium"
+                        : "what it emits begins in a vacuum";
+  problem_set(&check->said,
+              "%s: a ray from %s leaves the scene from (%g, %g, %g) along (%g, %g, %g) in %s, and "
+              "LightSource \"%s\" shines from infinity: %s; enclose the medium in shapes of "
+              "material \"interface\"",
+              scene->path, check->from, o.x, o.y, o.z, d.x, d.y, d.z,
+              name_of(scene, way->medium).text, light->type->name, why);
   return !disagree(check, way->number);
 }
 

@@ -62,10 +62,13 @@ static const struct {
     {MEDIA EYE POINT GLASS BALL("fog", "", "1") INTERFACE BALL("haze", "", ".5"),
      {"is in medium \"fog\"", "sphere", "has a vacuum"}},
     {IN_FOG EYE "LightSource \"infinite\" MediumInterface \"fog\" Shape \"sphere\"",
-     {"t.pbrt: nothing of the infinite light arrives through medium \"fog\"", "from the camera",
-      "enclose the medium"}},
+     {"t.pbrt: a ray from the camera leaves the scene from (", "in medium \"fog\"",
+      "\"infinite\" shines from infinity: nothing of it arrives through the unbounded medium; e"}},
     {IN_FOG EYE "LightSource \"distant\" MediumInterface \"fog\" Shape \"sphere\"",
-     {"nothing of the distant light arrives", "has no end", "leaves the scene"}},
+     {"leaves the scene", "in medium \"fog\"", "\"distant\" shines from infinity: nothing"}},
+    {"MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float density\" 1\n"
+     "MediumInterface \"grid\"\n" EYE "LightSource \"infinite\" Shape \"sphere\"",
+     {"leaves the scene", "in medium \"grid\"", "what it emits begins in a vacuum"}},
 };
 
 static bool check(const char *text, struct problem *problem) {

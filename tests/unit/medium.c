@@ -96,9 +96,21 @@ static void coefficients_are_scaled(void **state) {
   assert_spectrum(at.sigma_s, 3, 3, 3);
   assert_spectrum(at.emission, 0.375, 1.5, 4.5);
   assert_true(medium->g == -0.75);
+  struct scene scene = scene_of("Attribute \"medium\" \"float g\" .5 \"float scale\" 2\n"
+                                "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" "
+                                "\"float g\" .25\nWorldBegin Shape \"sphere\"");
+  scene.medium[0].type->at(&scene.medium[0], vec(0, 0, 0), &at);
+  assert_spectrum(at.sigma_s, 2, 2, 2);
+  assert_true(scene.medium[0].g == 0.25);
+}
+
+static void a_homogeneous_medium_is_one_piece(void **state) {
+  (void)state;
+  const struct medium *medium =
+      medium_of("\"string type\" \"homogeneous\" \"rgb sigma_a\" [1.5 3 4.5] \"float scale\" 1");
   double end, majorant;
   assert_true(medium->type->piece(medium, &(struct ray){.d = {0, 0, 1}}, 2, &end, &majorant));
-  assert_true(end == INFINITY && majorant == 7.5);
+  assert_true(end == INFINITY && majorant == 5.5);
 }
 
 // pbrt's table of published measurements, per mm.
@@ -328,6 +340,7 @@ int main(void) {
       cmocka_unit_test(instances_moving_shapes_and_mixed_meshes_keep_their_media),
       cmocka_unit_test(features_count_the_media_that_are_used),
       cmocka_unit_test(coefficients_are_scaled),
+      cmocka_unit_test(a_homogeneous_medium_is_one_piece),
       cmocka_unit_test(a_preset_overrides_the_coefficients),
       cmocka_unit_test(a_grid_is_interpolated_between_the_centres_of_its_cells),
       cmocka_unit_test(a_grid_is_the_sum_of_its_samples_tents),
