@@ -7,7 +7,7 @@
 
 enum {
   LEAF = 4,           // parts that are not halved further
-  PARTS_PER_BEAM = 8, // on average, besides one each
+  PARTS_PER_BEAM = 4, // on average, besides one each
 };
 
 // ---- parts ----
@@ -147,19 +147,19 @@ struct query {
   const struct beam_tree *tree;
   const struct beams *beams;
   const struct eye_segment *eye;
-  double o[3], inverse[3]; // of the eye's ray
-  double r2, reach;        // the boxes' widening
+  double inverse[3];           // of the eye's direction
+  double before[3], behind[3]; // its origin, moved by what boxes are widened by
+  double r2;
   uint32_t *found;
   int64_t n_found;
 };
 
 // What rounding may move a point of the ray or of a box by, in units of the largest coordinate: a
 // few times 2^-53.
-static double rounding(const struct query *query) {
-  const struct beam_node *root = &query->tree->node[0];
+static double rounding(const struct beam_node *root, const double origin[3]) {
   double most = 0;
   for (int axis = 0; axis < 3; axis++) {
-    double lo = fabs(root->lo[axis]), hi = fabs(root->hi[axis]), o = fabs(query->o[axis]);
+    double lo = fabs(root->lo[axis]), hi = fabs(root->hi[axis]), o = fabs(origin[axis]);
     double largest = lo < hi ? hi : lo;
     largest = largest < o ? o : largest;
     most = most < largest ? largest : most;
@@ -171,8 +171,8 @@ static double rounding(const struct query *query) {
 static bool passes(const struct query *query, const float lo[3], const float hi[3]) {
   double near = 0, far = query->eye->length;
   for (int axis = 0; axis < 3; axis++) {
-    double a = (lo[axis] - query->reach - query->o[axis]) * query->inverse[axis];
-    double b = (hi[axis] + query->reach - query->o[axis]) * query->inverse[axis];
+    double a = (lo[axis] - query->behind[axis]) * query->inverse[axis];
+    double b = (hi[axis] - query->before[axis]) * query->inverse[axis];
     double in = a < b ? a : b, out = a < b ? b : a;
     if (in > near) near = in;
     if (out < far) far = out;
@@ -214,11 +214,15 @@ int64_t beam_tree_find(const struct beam_tree *tree, const struct beams *beams,
   struct query query = {.tree = tree,
                         .beams = beams,
                         .eye = eye,
-                        .o = {eye->o.x, eye->o.y, eye->o.z},
                         .inverse = {1 / eye->d.x, 1 / eye->d.y, 1 / eye->d.z},
                         .r2 = r * r,
                         .found = found};
-  query.reach = r + rounding(&query);
+  const double origin[3] = {eye->o.x, eye->o.y, eye->o.z};
+  double reach = r + rounding(&tree->node[0], origin);
+  for (int axis = 0; axis < 3; axis++) {
+    query.before[axis] = origin[axis] - reach;
+    query.behind[axis] = origin[axis] + reach;
+  }
   descend(&query, 0, tree->part, tree->n_parts);
   qsort(found, (size_t)query.n_found, sizeof *found, by_number);
   return query.n_found;

@@ -22,7 +22,9 @@ static inline bool crossing_find(const struct eye_segment *eye, const struct pho
                                  double r2, struct crossing_point *point) {
   struct vec n = vec_cross(eye->d, beam->d), apart = vec_sub(beam->o, eye->o);
   point->sine2 = vec_dot(n, n);
-  if (!(point->sine2 > 0)) return false;
+  // u sine, by another way than below: to rounding.
+  double volume = vec_dot(apart, n);
+  if (!(volume * volume < r2 * point->sine2 * (1 + 0x1p-20))) return false; // also if parallel
   point->t = vec_dot(vec_cross(apart, beam->d), n) / point->sine2;
   if (!(point->t >= 0 && point->t < eye->length)) return false;
   point->s = vec_dot(vec_cross(apart, eye->d), n) / point->sine2;
