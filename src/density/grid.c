@@ -31,7 +31,7 @@ static struct grid_cell cell_numbered(int64_t x, int64_t y, int64_t z) {
   return (struct grid_cell){(uint32_t)x, (uint32_t)y, (uint32_t)z};
 }
 
-static struct grid_cell cell_of(struct vec p, double inverse_edge) {
+static inline struct grid_cell cell_of(struct vec p, double inverse_edge) {
   return cell_numbered(cell_coordinate(p.x, inverse_edge), cell_coordinate(p.y, inverse_edge),
                        cell_coordinate(p.z, inverse_edge));
 }
