@@ -205,6 +205,8 @@ static const char *applies(enum skip bit, const struct scene *scene,
   case SKIP_STATIC_EYE:
     if (features->random_eye) return "no, what a pixel's centre sees is random";
     return scene->settings.centre ? "yes" : "where pixel centres are asked for";
+  case SKIP_MEDIA:
+    return features->media ? "no, the scene has media" : "yes";
   default:
     return "wherever it can";
   }

@@ -8,7 +8,7 @@ const struct skip_row skip_rows[] = {
      "one eye pass for all iterations where the camera is not random"},
     {"unseen", SKIP_UNSEEN, "photons in grid cells that no point can see are not stored"},
     {"probes", SKIP_PROBES, "only the pixels that are asked for are computed"},
-    {"media", SKIP_MEDIA, "nothing of media in scenes without any"},
+    {"media", SKIP_MEDIA, "no medium is asked for, and no photon in one stored, where there are none"},
 };
 const int n_skip_rows = sizeof skip_rows / sizeof *skip_rows;
 

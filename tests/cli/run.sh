@@ -15,6 +15,8 @@ parts:
      depth: 1, probes: [[32, 32]], pixel: [centre, footprint]}
   - {scene: scenes/cornell-box.pbrt, photons: 300, iterations: 3, runs: 2, probes: [[20, 60]],
      reference-radius: [pixel, knn, ray-differentials], pixel: [centre, footprint]}
+  - {scene: tests/data/scenes/fog.pbrt, integrator: [probabilistic, sppm], radius: 0.3, alpha: 1/2,
+     radius-volume: [0.2, 0.4], photons: 300, iterations: 3, runs: 2, direct: [photons, nee]}
 YAML
 
 cat > "$scratch/long.yaml" <<'YAML'
