@@ -148,6 +148,44 @@ static void an_iteration_is_the_sum_over_the_photons(void **state) {
   }
 }
 
+// A gray cloud of density 1 to 9 along z. A photon on its first flight carries the light's power
+// over sigma_t where it is, an eye point there sigma_s over sigma_t: 2/3, whatever the density.
+static void photons_carry_flux_over_extinction_of_their_own_place(void **state) {
+  (void)state;
+  struct scene scene = scene_of(
+      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 15\n"
+      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n"
+      "LightSource \"beam\" \"point3 from\" [0 0 3] \"point3 to\" [0 0 0] \"float power\" 5\n"
+      "MakeNamedMedium \"cloud\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [0.1 0.1 0.1]\n"
+      "\"rgb sigma_s\" [0.2 0.2 0.2] \"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1]\n"
+      "\"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 3 \"float density\" [1 4 9]\n"
+      "Material \"interface\"\nMediumInterface \"cloud\" \"\"\nShape \"sphere\"\n");
+  struct estimator estimator[2];
+  pair_of("fixed", estimator);
+  struct measurement measure = measure_of(&scene, estimator, 2);
+  struct photon_map *map = photon_map_new(&measure, &arena);
+  measure.depth = 1;
+  photon_map_see(map, 1);
+  photon_map_emit(map, 1, (double[POINT_KINDS]){9, 9});
+  const struct photons *photons = &map->field[IN_VOLUME].photons;
+  const struct medium *cloud = &scene.medium[0];
+  double least = INFINITY, most = 0;
+  assert_true(photons->count > 500);
+  for (int64_t j = 0; j < photons->count; j++) {
+    struct medium_point at;
+    cloud->type->at(cloud, photons->position[j], &at);
+    double sigma_t = at.sigma_a[0] + at.sigma_s[0];
+    near(photons->flux[0][j] * sigma_t, 5, 1e-12);
+    least = sigma_t < least ? sigma_t : least;
+    most = sigma_t > most ? sigma_t : most;
+  }
+  assert_true(most > 2 * least); // the density varies
+  int seen = 0;
+  for (int p = 0; p < N_SOME; p++)
+    if (map->point[p].volume) near(map->point[p].weight[0], 2.0 / 3, 1e-12), seen++;
+  assert_true(seen > 0);
+}
+
 // ---- a density in space ----
 
 static void value_one(const struct bsdf *bsdf, struct vec wo, struct vec wi,
@@ -313,6 +351,22 @@ static void with_a_global_law_sppm_is_probabilistic(void **state) {
   for (long j = 0; j < photon_map_frame(&measure); j++) near(got[j], want[j], 1e-13);
 }
 
+// Hachisuka's rule at alpha = 1 counts and keeps every radius; the cube root of a cube is it up to
+// rounding.
+static void sppm_that_keeps_all_photons_is_probabilistic(void **state) {
+  (void)state;
+  struct scene scene = scene_of(fog);
+  struct estimator fixed[2], local[2];
+  pair_of("fixed", fixed);
+  pair_of("hachisuka", local);
+  local[0].alpha = local[1].alpha = 1;
+  struct measurement measure = measure_of(&scene, fixed, 2);
+  double *want = average_of("probabilistic", &measure, 20);
+  measure.estimator = local;
+  double *got = average_of("sppm", &measure, 20);
+  for (long j = 0; j < photon_map_frame(&measure); j++) near(got[j], want[j], 1e-12);
+}
+
 static void scenes_without_media_have_the_same_bits_with_their_code(void **state) {
   (void)state;
   struct scene scene = scene_of(clear);
@@ -380,11 +434,13 @@ int main(void) {
   whole = arena_reserve();
   const struct CMUnitTest tests[] = {
       TEST(an_iteration_is_the_sum_over_the_photons),
+      TEST(photons_carry_flux_over_extinction_of_their_own_place),
       TEST(balls_measure_a_uniform_density),
       TEST(each_kind_has_its_own_radius_and_count),
       TEST(any_number_of_threads_gives_the_same_bits),
       TEST(a_probe_is_the_pixel_of_the_film),
       TEST(with_a_global_law_sppm_is_probabilistic),
+      TEST(sppm_that_keeps_all_photons_is_probabilistic),
       TEST(scenes_without_media_have_the_same_bits_with_their_code),
       TEST(radii_that_make_no_sense_are_refused),
   };
