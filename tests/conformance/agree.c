@@ -110,7 +110,7 @@ static long count_tests(void) {
   long rows = 0, scenes = sizeof own_scenes / sizeof *own_scenes;
   while (integrator_types[rows]) rows++;
   for (const struct conformance_scene *row = conformance_scenes; row->name; row++)
-    scenes += !row->media;
+    scenes += !row->alone;
   return scenes * rows * (AREAS + 1);
 }
 
@@ -257,7 +257,7 @@ void agree_check(const struct options *options, struct report *report, bool conf
   for (int s = 0; conformance && conformance_scenes[s].name; s++) {
     struct setup setup = in_room;
     setup.name = conformance_scenes[s].name;
-    if (!conformance_scenes[s].media) check_setup(options, report, setup, s, threshold);
+    if (!conformance_scenes[s].alone) check_setup(options, report, setup, s, threshold);
   }
   for (size_t s = 0; s < sizeof own_scenes / sizeof *own_scenes; s++)
     if (own_scenes[s].in_full == options->full)

@@ -14,7 +14,7 @@ struct doubt {
 
 struct conformance_scene {
   const char *name, *about;
-  bool media;                // participating: path tracing only
+  bool alone; // path tracing only: photon beams that all cross every pixel take minutes
   const struct doubt *doubt; // of the blocks it touches, or NULL
 };
 extern const struct conformance_scene conformance_scenes[]; // ends with a NULL name
