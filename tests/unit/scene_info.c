@@ -59,10 +59,22 @@ static void what_a_scene_does_not_need_is_said_so(void **state) {
   assert_null(strstr(said, "sigma"));
 }
 
+static void a_grid_says_where_it_is_and_how_dense(void **state) {
+  (void)state;
+  info_of("Translate 1 2 3 Scale 2 2 2 MakeNamedMedium \"a\" \"string type\" \"uniformgrid\"\n"
+          "\"integer nx\" 2 \"float density\" [1 4] \"rgb sigma_a\" [.5 .5 .5] WorldBegin\n"
+          "MediumInterface \"a\" \"\" Shape \"sphere\"");
+  assert_says("  a            uniformgrid, where it is densest, sigma_a 2, sigma_s 4, g 0\n"
+              "               2 x 1 x 1 samples up to 4, within 1 2 3 to 3 4 5\n"
+              "               inside of 1 and outside of 0 shapes, around 0 lights\n");
+  assert_says("  media        yes");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_a_scene_uses_is_listed),
       cmocka_unit_test(what_a_scene_does_not_need_is_said_so),
+      cmocka_unit_test(a_grid_says_where_it_is_and_how_dense),
   };
   return cmocka_run_group_tests_name("scene_info", tests, NULL, NULL);
 }
