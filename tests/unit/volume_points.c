@@ -292,8 +292,10 @@ static void each_kind_has_its_own_radius_and_count(void **state) {
 static double *average_of(const char *name, const struct measurement *measure, uint64_t n) {
   const struct integrator_type *integrator = integrator_find(name);
   long size = photon_map_frame(measure);
-  double *sum = arena_new(&arena, double, size), *frame = arena_new(&arena, double, size);
-  void *state = integrator->create(measure, &arena);
+  double *sum = arena_new(&arena, double, size);
+  struct arena scratch = arena;
+  double *frame = arena_new(&scratch, double, size);
+  void *state = integrator->create(measure, &scratch);
   integrator->begin(state, 1);
   for (uint64_t i = 1; i <= n; i++) {
     integrator->step(state, i, frame);
