@@ -61,6 +61,10 @@ static bool has_constants(const struct prediction *theory) {
   return theory->closed_form && theory->independent;
 }
 
+static bool has_bias_constant(const struct prediction *theory) {
+  return has_constants(theory) || (theory->known_bias && theory->independent);
+}
+
 static void set_rate(struct fit_row *row, double rate, double se, double lo, double hi) {
   row->resolved = se <= largest_rate_se && hi - lo <= widest_interval;
   if (!row->resolved) return;
@@ -68,8 +72,8 @@ static void set_rate(struct fit_row *row, double rate, double se, double lo, dou
 }
 
 // In closed form the fits are of theory's own unit, so that a coefficient is a ratio to theory's.
-static void set_coefficient(struct fit_row *row, double unit, double value, double se) {
-  double scale = row->closed_form ? unit : 1;
+static void set_coefficient(struct fit_row *row, bool known, double unit, double value, double se) {
+  double scale = known ? unit : 1;
   row->coefficient = value * scale;
   row->coefficient_se = se * fabs(scale);
 }
@@ -81,7 +85,8 @@ static void variance_row(const struct variance_fit *v, const struct prediction *
   add_silence(row, v->silence);
   if (v->why) return;
   set_rate(row, v->rate, v->rate_se, v->rate_lo, v->rate_hi);
-  set_coefficient(row, theory->variance_coefficient, v->coefficient, v->coefficient_se);
+  set_coefficient(row, theory->closed_form, theory->variance_coefficient, v->coefficient,
+                  v->coefficient_se);
   if (row->resolved) add_t(row, "rate", v->rate_deviate, v->deviate_dof);
   if (has_constants(theory)) add_t(row, "coefficient", v->coefficient_deviate, v->deviate_dof);
 }
@@ -90,10 +95,11 @@ static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
                      const struct prediction *theory, struct fit_row *row) {
   if (!theory->unbiased) row->rate_theory = bias_theory_rate(theory);
   double known = theory->unbiased ? 0 : theory->bias_coefficient;
-  if (theory->unbiased || has_constants(theory)) row->coefficient_theory = known;
+  if (theory->unbiased || has_bias_constant(theory)) row->coefficient_theory = known;
   add_silence(row, v->silence);
   if (!b->measured) return;
-  set_coefficient(row, theory->unbiased ? 1 : known, b->coefficient, b->coefficient_se);
+  set_coefficient(row, theory->closed_form || theory->known_bias, theory->unbiased ? 1 : known,
+                  b->coefficient, b->coefficient_se);
   row->snr = b->snr;
   row->upper_bound =
       fabs(row->coefficient) + special_t_quantile(0.025, b->dof) * row->coefficient_se;
@@ -106,7 +112,7 @@ static void bias_row(const struct bias_fit *b, const struct variance_fit *v,
   if (row->resolved) add_t(row, "rate", b->rate_deviate, b->dof);
   if (theory->unbiased)
     add_t(row, "zero-bias", b->coefficient / b->coefficient_se, b->dof);
-  else if (has_constants(theory))
+  else if (has_bias_constant(theory))
     add_t(row, "coefficient", (b->coefficient - 1) / b->coefficient_se, b->dof);
 }
 

@@ -40,7 +40,9 @@ static bool from_pilot(const struct prediction *theory, const struct series *pil
     expected->variance[j] = v.expected[j];
     expected->kurtosis[j] = (v.dispersion[j] - 2 / (runs - 1)) * runs;
   }
-  if (!pilot->richardson) return true;
+  for (uint64_t j = 0; theory->known_bias && j < theory->n; j++)
+    expected->bias[j] = theory->bias[j];
+  if (theory->known_bias || !pilot->richardson) return true;
   struct variance_fit of_difference = fit_variance(theory, pilot->richardson, arena);
   if (of_difference.why) return true;
   struct bias_fit b =

@@ -1,6 +1,7 @@
 #include "analysis/prediction.h"
 
 #include "analysis/expected_radius.h"
+#include "analysis/furnace.h"
 #include "analysis/pairs.h"
 #include "analysis/receiver.h"
 
@@ -142,7 +143,7 @@ struct prediction prediction_from_profile(const struct profile *profile, double 
 struct prediction prediction_of_richardson(const struct prediction *theory) {
   struct prediction p = *theory;
   p.truth = p.truth_se = 0;
-  if (!theory->closed_form) return p;
+  if (!theory->closed_form && !theory->known_bias) return p;
   p.bias = theory->richardson;
   if (!p.unbiased) p.bias_coefficient = p.bias[0];
   return p;
@@ -262,6 +263,21 @@ struct family *prediction_family(const struct cell *cell, struct arena *arena) {
   return family;
 }
 
+// What a wall takes of photons that are uniform.
+static void set_bias_of_furnace(struct prediction *p, const struct furnace *furnace,
+                                const struct cell *cell, double radius, struct arena *arena) {
+  double *bias = arena_new(arena, double, (ptrdiff_t)p->n);
+  double *richardson = arena_new(arena, double, (ptrdiff_t)p->n);
+  for (uint64_t j = 0; j < p->n; j++) {
+    double r = radius_at(p->d, radius, p->family.rho[j]);
+    bias[j] = furnace_bias(furnace, cell->kernel, r);
+    richardson[j] = 4.0 / 3 * (bias[j] - furnace_bias(furnace, cell->kernel, r / 2));
+  }
+  p->known_bias = true;
+  p->bias = bias, p->bias2 = NULL, p->richardson = richardson;
+  p->bias_coefficient = bias[0];
+}
+
 struct prediction prediction_new(const struct scene *scene, const struct cell *cell,
                                  const struct probe *probe, const struct family *family,
                                  struct arena *arena) {
@@ -279,6 +295,13 @@ struct prediction prediction_new(const struct scene *scene, const struct cell *c
     p = prediction_from_reference(truth, se, terms_of(scene, cell, probe), family, arena);
     p.unbiased = !cell->integrator->photons;
     if (p.unbiased) p.bias_kind = BIAS_SMOOTH;
+    struct furnace furnace;
+    double radius = probe_radius(cell, probe);
+    if (!p.unbiased && cell_radius_is_known(cell) &&
+        furnace_find(scene, cell, probe, radius, *arena, &furnace)) {
+      p.truth = furnace.radiance, p.truth_se = 0;
+      set_bias_of_furnace(&p, &furnace, cell, radius, arena);
+    }
     if (!p.unbiased && cell_radius_is_known(cell))
       p.first = first_clear(scene, probe, cell->radius, family, *arena);
   }

@@ -25,8 +25,8 @@ enum bias_kind {
 // Where there is a closed form, at theory's radii and per iteration,
 //   variance = divergent + rest, bias = bias,
 // exactly. Elsewhere only their shape is known: variance = a divergent + c rest and
-// bias = b1 bias + b2 bias2, with a, c, b1, b2 to be fitted. Where theory's bias is zero, `bias` is
-// the shape that is looked for.
+// bias = b1 bias + b2 bias2, with a, c, b1, b2 to be fitted (not b1 if `known_bias`). Where
+// theory's bias is zero, `bias` is the shape that is looked for.
 struct prediction {
   int d;          // dimension of the kernel that leads
   double pairs;   // of struct terms
@@ -36,6 +36,7 @@ struct prediction {
   struct family family;
   const char *why_not; // why nothing is fitted although theory knows all; or NULL
   bool closed_form;
+  bool known_bias;  // as in closed form, while of the variance only the shape is known
   bool independent; // of each other; else radii follow the photons found, are those expected in
                     // closed form, else the law's, and exponents are predicted but constants are
                     // not (theory 2.4)
