@@ -9,6 +9,7 @@
 #   scenes, names of the columns and their titles; "": the first six of the file
 #   only          integrators whose cells are shown; "": all
 #   slopes        1: a curve of alpha ends with theory's power of N, if alpha is all that varies
+#   powers        of rho, which lead the bias of each column's scene; not set: 1, as on surfaces
 
 # ---- inputs: gnuplot itself exits 0 when data are missing ----
 if (results eq "") { print "usage: gnuplot -c ".figure.".gp RESULTS_DIR"; exit status 2 }
@@ -117,7 +118,12 @@ do for [j = 1:n_keys] {
 unseeded = ""
 do for [j in varied] { if (word(keys, int(j)) ne "seed") { unseeded = unseeded." ".j } }
 if (unseeded ne "") { varied = unseeded }
-value_text(v) = !strstrt(v, ".") ? v : abs(v - 2./3) < 1e-9 ? "2/3" : sprintf("%g", real(v))
+# Three digits, or a fraction of small numbers, or six digits.
+is_whole(x) = abs(x - int(x + 0.5)) < 1e-6
+smallest(x, n) = n > 21 ? 0 : is_whole(x * n) ? n : smallest(x, n + 1)
+fraction(x) = is_whole(1000 * x) || !smallest(x, 2) ? sprintf("%g", x) : \
+  sprintf("%d/%d", int(x * smallest(x, 2) + 0.5), smallest(x, 2))
+value_text(v) = !strstrt(v, ".") ? v : fraction(real(v))
 key_text(k) = k eq "alpha" ? "α" : k
 
 # ---- the series: cells alike in what varies have one look and one entry of the legend ----
@@ -164,9 +170,10 @@ hollow(k) = full(k) - 1
 dash(k) = k > 6 ? 2 : 1
 with_slopes = slopes && words(varied) == 1 && word(keys, int(word(varied." 0", 1))) eq "alpha"
 alpha(k) = real(identity[k])
-slope_text(k, q) = !with_slopes ? "" : abs(alpha(k) - 2./3) < 1e-9 ? \
-  (q eq "variance" ? "N^{−2/3}" : "N^{−1/3}") : \
-  sprintf("N^{−%g}", q eq "variance" ? alpha(k) : 1 - alpha(k))
+# The average forgets no bias: at 1/N that of its first iterations is left.
+falls(k, c) = exists("powers") ? real(word(powers, c)) * (1 - alpha(k)) : 1 - alpha(k)
+slope_of(k, q, c) = q eq "variance" ? alpha(k) : falls(k, c) < 1 ? falls(k, c) : 1
+slope_text(k, q, c) = !with_slopes ? "" : sprintf("N^{−%s}", fraction(slope_of(k, q, c)))
 value_list(k) = words(varied) == 1 ? " ".value_text(word(identity[k], 1)) : sprintf(" %d", k)
 noted = words(varied) == 1 ? key_text(word(keys, int(word(varied, 1))))." =" : "curves"
 
@@ -246,7 +253,7 @@ do for [terminal_name in "pdf svg png"] {
           for [i in here] block(quantity, i) using 1:($6 == 1 ? NaN : $4) with points \
             pointtype hollow(series_of[int(i)]) linewidth 0.6 linecolor rgb colour(series_of[int(i)]), \
           for [i in here] block(quantity, i) using 1:($1 == n_max ? $5 : NaN):\
-            (slope_text(series_of[int(i)], quantity)) with labels left offset 0.5,0 font ",7" \
+            (slope_text(series_of[int(i)], quantity, c)) with labels left offset 0.5,0 font ",7" \
             textcolor rgb colour(series_of[int(i)])
       }
     }
