@@ -99,8 +99,8 @@ static void store_on_surface(const struct walk *walk, int j, const struct pass *
   const struct photon_sink *sink = &pass->to->surface;
   if (!is_gathered(walk->scene, surface, bsdf, vec_scale(walk->ray[j].d, -1))) return;
   int64_t at = store(walk, j, pass, sink, surface->p);
-  for (int c = 0; at >= 0 && c < walk->n_channels; c++)
-    sink->photons->flux[c][at] = walk->throughput[c][j];
+  if (at < 0) return;
+  for (int c = 0; c < walk->n_channels; c++) sink->photons->flux[c][at] = walk->throughput[c][j];
 }
 
 // A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
