@@ -120,7 +120,7 @@ do for [j in varied] { if (word(keys, int(j)) ne "seed") { unseeded = unseeded."
 if (unseeded ne "") { varied = unseeded }
 # Three digits, or a fraction of small numbers, or six digits.
 is_whole(x) = abs(x - int(x + 0.5)) < 1e-6
-smallest(x, n) = n > 21 ? 0 : is_whole(x * n) ? n : smallest(x, n + 1)
+smallest(x, n) = n > 15 ? 0 : is_whole(x * n) ? n : smallest(x, n + 1)
 fraction(x) = is_whole(1000 * x) || !smallest(x, 2) ? sprintf("%g", x) : \
   sprintf("%d/%d", int(x * smallest(x, 2) + 0.5), smallest(x, 2))
 value_text(v) = !strstrt(v, ".") ? v : fraction(real(v))

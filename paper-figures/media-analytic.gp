@@ -5,7 +5,7 @@
 part = system("dirname \"".ARG0."\"")."/convergence.part.gp"
 results = ARG1
 scenes = "fog-beam fog-slab fog-furnace"
-names = "'Points: σ_t r_1 = 1.8' 'Beams: r_1 = 0.9 a' 'Points before a wall'"
+names = "'Points, d = 3: bias ∝ r^2' 'Beams, d = 1: bias ∝ r^2' 'Points at a wall: bias ∝ r'"
 powers = "0.6666666666666667 2 0.3333333333333333"
 figure = "media-analytic"
 only = ""
