@@ -1,7 +1,7 @@
 // Fog in a white furnace: a closed room of flat walls that all emit L_e and reflect rho diffusely,
 // full of a medium that only scatters. Radiance is L = L_e / (1 - rho) everywhere in all
 // directions, and so photons are uniform; what a ball lacks is what would be behind the wall that
-// ends the ray, met at the cosine c at the distance D (see struct terms, analysis/prediction.h):
+// ends the ray, met at the cosine c at the distance D (see analysis/terms.h):
 //   bias = -L sigma r / c e^(-sigma D) int_0^1 e^(x a) M(a) da,   x = sigma r / c,
 // M(a) the share of a kernel beyond the distance a r. By parts, with the density of |u| in psi's
 // marginal along an axis, the integral is

@@ -4,6 +4,7 @@
 
 #include "analysis/family.h"
 #include "analysis/profile.h"
+#include "analysis/terms.h"
 #include "base/arena.h"
 #include "experiment/experiment.h"
 #include "log/results.h"
@@ -68,24 +69,7 @@ struct prediction prediction_from_profile(const struct profile *, double radius,
                                           double emitted, const struct family *, struct arena *);
 // What Richardson's estimate of the bias shows, where that is known; its variance is not.
 struct prediction prediction_of_richardson(const struct prediction *);
-// What is known where nothing but exponents is. In a medium (d = 3, 1):
-// - `ends`: near where the medium ends on the ray, at a wall or an interface, balls lack the
-// photons
-//   behind. Within r of a wall that the ray meets at the cosine c an eye point sees the share lost
-//   M(h / r) at the height h: the mean over the ray lacks
-//     T sigma_s S r / c int_0^1 M(a) da = T sigma_s S r / c E|u_1| / 2     (3/16 for the box)
-//   with T what the ray has left there and S the radiance scattered at the wall over sigma_s. So
-//   the bias leads with r, and r^2 is the second term. Beams lack as much where they cross the ray
-//   near its end, unless wall and ray are at right angles.
-// - `pairs`: two photons of one path in a ball (analysis/pairs.h), over the leading term of the
-//   first iteration; NAN: some, of unknown size.
-// - How far a ray gets is random, which adds a variance that knows no radius: with points it
-//   outweighs the terms of r^-1 and r^0 that photons have.
-struct terms {
-  int d;
-  bool ends;
-  double pairs;
-};
+// ... and where nothing but the exponents is known.
 struct prediction prediction_from_reference(double reference, double reference_se, struct terms,
                                             const struct family *, struct arena *);
 
