@@ -7,14 +7,13 @@
 #include "scene/scene.h"
 
 // In a medium (d = 3, 1):
-// - `ends`: near where the medium ends on the ray, at a wall or an interface, balls lack the
-// photons
-//   behind. Within r of a wall that the ray meets at the cosine c an eye point sees the share lost
-//   M(h / r) at the height h: the mean over the ray lacks
+// - `ends`: where the medium ends on the ray, at a wall or an interface, balls lack the photons
+//   behind. Within r of a wall that the ray meets at the cosine c an eye point at the height h
+//   lacks the share M(h / r), and the mean over the ray
 //     T sigma_s S r / c int_0^1 M(a) da = T sigma_s S r / c E|u_1| / 2     (3/16 for the box)
 //   with T what the ray has left there and S the radiance scattered at the wall over sigma_s. So
-//   the bias leads with r, and r^2 is the second term. Beams lack as much where they cross the ray
-//   near its end, unless wall and ray are at right angles. The surface behind has a bias as rho,
+//   the bias leads with r, and r^2 is the second term. Beams, too, lack what is of order r near
+//   the ray's end, unless wall and ray are at right angles. The surface behind has a bias as rho,
 //   third after points, and first along with what beams lack.
 // - `pairs`: two photons of one path in a ball (analysis/pairs.h), over the leading term of the
 //   first iteration; NAN: some, of unknown size.
