@@ -3,6 +3,7 @@
 // it is not.
 #include "analysis/outlook.h"
 #include "app/cli.h"
+#include "numeric/elementary.h"
 #include "run/pilot.h"
 #include "run/run.h"
 #include "run/series.h"
@@ -35,38 +36,39 @@ static void print_head(const struct planner *planner) {
 static double reference_se(const struct outlook *outlook) { return 0.03 * outlook->bias; }
 
 // What else reaches the error wanted. A variance's rate is known to ((K - 1) N)^-1/2; a bias's to
-// the noise over the bias, r^-1 over r^q, while more iterations help it little (theory 4.4).
+// the noise over the bias, r^(-d / 2) over r^q, while more iterations help it little (theory 4.4).
 static void print_instead(const struct planner *planner, const struct cell *cell, double se,
-                          double power, char text[32]) {
+                          double power, double radius, char text[32]) {
   double ratio = se / planner->wanted_se;
   if (!(ratio > 1) || !isfinite(ratio)) return;
   if (isnan(power))
     snprintf(text, 32, "iterations %.0f", ceil((double)cell->iterations * ratio * ratio));
-  else if (power >= 0 && cell_radius_is_known(cell))
-    snprintf(text, 32, "radius %.3g", cell->radius * pow(ratio, 1 / (1 + power)));
+  else if (power > 0 && cell_radius_is_known(cell))
+    snprintf(text, 32, "radius %.3g", radius * num_pow(ratio, 1 / power));
 }
 
-// The power of the radius that a bias goes with; below zero: none.
+// The power d / 2 + q of the radius that the bias over the noise goes with; 0: none.
 static double bias_power(const struct prediction *theory) {
+  double noise = theory->d / 2.0;
   switch (theory->bias_kind) {
   case BIAS_SMOOTH:
-    return 2;
+    return noise + 2;
   case BIAS_FOURTH:
-    return 4;
+    return noise + 4;
   case BIAS_SIDE:
-    return 1;
+    return noise + 1;
   case BIAS_EDGE:
-    return 0;
+    return noise;
   default:
-    return -1;
+    return 0;
   }
 }
 
 // What a row is of: a quantity's standard error of one run.
 struct planned {
   const char *quantity;
-  double one_run, power; // power: NAN for a variance
-  double reference;      // its standard error; NAN: no matter
+  double one_run, power, radius; // power: NAN for a variance
+  double reference;              // its standard error; NAN: no matter
 };
 
 static double print_row(const struct planner *planner, const struct cell *cell, struct pixel at,
@@ -80,7 +82,7 @@ static double print_row(const struct planner *planner, const struct cell *cell, 
     snprintf(needed, sizeof needed, "%.0f", runs);
     snprintf(seconds, sizeof seconds, "%.3g", runs * run_s);
   }
-  print_instead(planner, cell, se, planned.power, instead);
+  print_instead(planner, cell, se, planned.power, planned.radius, instead);
   printf("%4d  %-22s %-13s %7.4f %9s  %-9s %8.0f %9s %12s %9s  %-17s ", cell->number, cell->scene,
          cell->integrator->name, cell->alpha, probe, planned.quantity, (double)cell->runs, known,
          needed, seconds, instead);
@@ -97,11 +99,11 @@ static double print_series(const struct planner *planner, const struct group_pla
   struct outlook outlook = outlook_new(theory, series->iteration ? series : NULL, scratch);
   double most = 0;
   if (cell->quantities & QUANTITY_VARIANCE)
-    most = print_row(planner, cell, at, (struct planned){"variance", outlook.variance_se, NAN, NAN},
-                     run_s);
+    most = print_row(planner, cell, at,
+                     (struct planned){"variance", outlook.variance_se, NAN, NAN, NAN}, run_s);
   if (!(cell->quantities & QUANTITY_BIAS) || isnan(outlook.bias_se)) return most;
-  double reference = theory->closed_form ? NAN : reference_se(&outlook);
-  struct planned bias = {"bias", outlook.bias_se, bias_power(theory), reference};
+  double reference = theory->closed_form || theory->known_bias ? NAN : reference_se(&outlook);
+  struct planned bias = {"bias", outlook.bias_se, bias_power(theory), theory->radius, reference};
   double runs = print_row(planner, cell, at, bias, run_s);
   return runs > most ? runs : most;
 }
