@@ -1,5 +1,5 @@
 // The beam x beam estimate with blur in one dimension (Jarosz et al. 2011, "Progressive photon
-// beams", section 4): the radiance that photon beams scatter into an eye ray,
+// beams"): the radiance that photon beams scatter into an eye ray,
 //   L_r = 1 / n_emitted * sum over crossings of T(t) sigma_s(x) f(wo, wi) flux k_r(u) / sin theta,
 // x at distance t where the eye's ray is closest to the beam, u [scene units] their distance there,
 // theta the angle between them, T the transmittance from the eye, sigma_s and the phase function f
@@ -8,8 +8,8 @@
 // along the common perpendicular: so the mean is the integral over t of T sigma_s f times the
 // fluence, blurred over u only, and nothing is lost or doubled at the ends of a piece. No clamp of
 // 1 / sin theta: over the directions of space its mean and its square's mean are finite (sin theta
-// of them pass, and sin theta dtheta have the angle), its cube's is not, so heavy tails are to be
-// expected.
+// of them pass, and sin theta dtheta have the angle), its cube's is not, so that no
+// kurtosis converges.
 #ifndef DENSITY_BEAM_GATHER_H
 #define DENSITY_BEAM_GATHER_H
 
