@@ -29,7 +29,7 @@ const struct conformance_scene conformance_scenes[] = {
     {.name = "c07-textures", .about = "checkerboard, image texture, texture scale"},
     {.name = "c08-lens", .about = "thin lens"},
     {.name = "c09-motion", .about = "motion blur"},
-    {.name = "c10-fog", .about = "fog around everything", .alone = true},
+    {.name = "c10-fog", .about = "fog around everything", .fog = true},
     {.name = "c11-media-in-shapes", .about = "media inside shapes, interface, medium inside glass"},
     {.name = "c12-instances", .about = "Include, instances, transforms, bilinear patch"},
     {.name = "c13-environment", .about = "image environment"},

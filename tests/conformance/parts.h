@@ -14,7 +14,7 @@ struct doubt {
 
 struct conformance_scene {
   const char *name, *about;
-  bool alone; // path tracing only: photon beams that all cross every pixel take minutes
+  bool fog;                  // around everything: integrators are compared in full only
   const struct doubt *doubt; // of the blocks it touches, or NULL
 };
 extern const struct conformance_scene conformance_scenes[]; // ends with a NULL name

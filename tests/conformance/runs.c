@@ -10,13 +10,13 @@
 
 static bool sees_mirrored(const struct eye_point *point) { return point->hit && point->vertex > 0; }
 
-// The pixels of which any of some eye paths found a surface by way of a delta lobe, and their
-// neighbours: an object's rim may cover less of a pixel than the paths find.
+// The pixels (of the whole film) of which any of some eye paths found a surface by way of a delta
+// lobe, and their neighbours: an object's rim may cover less of a pixel than the paths find.
 static bool *find_mirrored(const struct subject *subject, struct arena *arena) {
   enum { LOOKS = 16 };
   const struct measurement *measure = &subject->measure;
   int width = subject->scene.camera.width, height = subject->scene.camera.height;
-  bool *mirrored = arena_new(arena, bool, measure->n_points);
+  bool *mirrored = arena_new(arena, bool, (long)width *height);
   if (!measure->features.random_eye) return mirrored; // nor any delta lobe
   struct arena scratch = arena_reserve(), kept = scratch;
   struct eye_point *point = arena_new(&scratch, struct eye_point, measure->n_points);
@@ -28,8 +28,9 @@ static bool *find_mirrored(const struct subject *subject, struct arena *arena) {
     eye_trace(walk, measure->pixel, measure->n_points, measure->footprint, measure->depth, point);
     for (int j = 0; j < measure->n_points; j++) {
       if (!sees_mirrored(&point[j])) continue;
-      for (int y = j / width - 1; y <= j / width + 1; y++)
-        for (int x = j % width - 1; x <= j % width + 1; x++)
+      struct pixel at = measure->pixel[j];
+      for (int y = at.y - 1; y <= at.y + 1; y++)
+        for (int x = at.x - 1; x <= at.x + 1; x++)
           if (x >= 0 && y >= 0 && x < width && y < height) mirrored[y * width + x] = true;
     }
   }
@@ -43,11 +44,12 @@ struct regions regions_of(const struct subject *subject, struct arena *arena) {
   const bool *mirrored = find_mirrored(subject, arena);
   struct regions regions = {.in = arena_new(arena, uint16_t, n)};
   for (int j = 0; j < n; j++) {
-    struct region pixel = {j % width, j / width, 1, 1};
+    struct pixel at = subject->measure.pixel[j];
+    struct region pixel = {at.x, at.y, 1, 1};
     unsigned in = 1;
     for (int q = 0; q < 4; q++)
       if (region_overlap(pixel, region_quadrant(&film, q))) in |= 2u << q;
-    in |= mirrored[j] ? 1u << MIRRORED : in << UNMIRRORED;
+    in |= mirrored[at.y * width + at.x] ? 1u << MIRRORED : in << UNMIRRORED;
     regions.in[j] = (uint16_t)in;
     for (int r = 0; r < REGIONS; r++) regions.pixels[r] += in >> r & 1;
   }
@@ -73,11 +75,12 @@ static const double extrapolation[3] = {1.0 / 3, -2, 8.0 / 3}, as_it_is[1] = {1}
 enum { HIT_POINTS = 2 }; // of integrators that draw them once: more than one, for a pixel's mean
 
 static struct cell cell_of(const struct subject *subject, const struct runs_plan *plan,
-                           double radius) {
+                           double part) {
   struct cell cell = {.integrator = plan->type,
                       .kernel = kernel_find("epanechnikov"),
                       .alpha = 1,
-                      .radius = radius,
+                      .radius = part * plan->radius,
+                      .radius_volume = part * plan->volume,
                       .reference_radius = &reference_radii[0],
                       .photons = plan->n_emitted,
                       .iterations = plan->iterations,
@@ -94,7 +97,7 @@ static int count_estimators(const struct runs_plan *plan) { return plan->type->p
 static bool make_estimators(const struct subject *subject, const struct runs_plan *plan,
                             struct estimator estimator[3], struct problem *problem) {
   for (int e = 0; e < count_estimators(plan); e++) {
-    struct cell cell = cell_of(subject, plan, ldexp(plan->radius, -e));
+    struct cell cell = cell_of(subject, plan, ldexp(1, -e));
     if (!plan_estimator(&cell, &subject->scene, &estimator[e], problem)) return false;
   }
   return true;
@@ -110,7 +113,7 @@ static struct measurement measurement_of(const struct subject *subject,
                                          const struct runs_plan *plan,
                                          struct estimator estimator[3], struct arena scratch) {
   struct problem problem = {0};
-  struct cell cell = cell_of(subject, plan, plan->radius);
+  struct cell cell = cell_of(subject, plan, 1);
   bool accepted = make_estimators(subject, plan, estimator, &problem);
   assert(accepted);
   struct measurement measure = plan_measurement(&cell, &subject->scene, subject->measure.bvh, 0);

@@ -19,7 +19,7 @@ struct regions regions_of(const struct subject *, struct arena *);
 struct runs_plan {
   const struct integrator_type *type;
   enum direct direct;
-  double radius;                  // the largest of three
+  double radius, volume;          // the largest of three, on surfaces and in media; 0: the same
   uint64_t n_emitted, iterations; // of each run
   int first, runs;                // first + 1, ..., first + runs are their numbers
   const char *purpose;            // tells its seed from others
