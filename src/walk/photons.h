@@ -10,7 +10,7 @@ struct photons {
   int n_channels;
   struct vec *position;
   struct vec *wi;   // towards where it came from, unit length
-  double *flux[3];  // W, not divided by n_emitted; in media W x scene unit: see photon_pass.volume
+  double *flux[3];  // W, not divided by n_emitted; in media W x scene unit: see photon_sinks.volume
   uint16_t *vertex; // scatterings on its way; 65535 for more
   uint8_t *kind;    // enum light_path: what an eye that looks here completes
 };
