@@ -115,10 +115,27 @@ static bool check_points(const struct cell *cell, const struct scene *scene,
                      scene->path, cell->integrator->name);
 }
 
-// In a volume a point's own radius would be that of a ball, which nothing here finds.
+static const struct medium *glowing_medium(const struct scene *scene) {
+  for (uint32_t k = 0; k < scene->n_media; k++) {
+    struct medium_point most;
+    scene->medium[k].type->peak(&scene->medium[k], &most);
+    if (most.emission[0] > 0 || most.emission[1] > 0 || most.emission[2] > 0)
+      return &scene->medium[k];
+  }
+  return NULL;
+}
+
+// Photons start at lights, so nothing would scatter what a medium emits. In a volume a point's own
+// radius would be that of a ball, which nothing here finds.
 static bool check_media(const struct cell *cell, const struct scene *scene,
                         struct problem *problem) {
   bool media = scene_features(scene).media;
+  const struct medium *glowing = cell->depth > 0 ? glowing_medium(scene) : NULL;
+  if (glowing)
+    return problem_set(problem,
+                       "%s: medium \"%s\" emits light, but photons start at lights only: take "
+                       "integrator path (or depth 0: what is emitted, not scattered)",
+                       scene->path, glowing->name);
   if (cell->radius_volume > 0 && !media)
     return problem_set(problem, "%s: radius-volume: the scene has no participating media",
                        scene->path);

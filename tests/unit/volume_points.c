@@ -387,8 +387,8 @@ static void scenes_without_media_have_the_same_bits_with_their_code(void **state
 
 // ---- what is refused ----
 
-static void assert_planned(const char *text, const char *integrator, double radius_volume, int k,
-                           const char *expected) {
+static void assert_planned_to(int depth, const char *text, const char *integrator,
+                              double radius_volume, int k, const char *expected) {
   struct scene scene = scene_of(text);
   struct problem problem = {0};
   struct estimator estimator;
@@ -401,11 +401,32 @@ static void assert_planned(const char *text, const char *integrator, double radi
                       .reference_radius = &reference_radii[0],
                       .photons = 100,
                       .iterations = 10,
-                      .hit_points = 1};
+                      .hit_points = 1,
+                      .depth = depth};
   cell.law = cell_default_law(&cell);
   bool planned = plan_estimator(&cell, &scene, &estimator, &problem);
   if (expected ? planned || !strstr(problem.text, expected) : !planned)
     fail_msg("%s, %g: %s", integrator, radius_volume, problem.text);
+}
+
+static void assert_planned(const char *text, const char *integrator, double radius_volume, int k,
+                           const char *expected) {
+  assert_planned_to(5, text, integrator, radius_volume, k, expected);
+}
+
+// Photons start at lights: what a medium emits, and scatters again, they never carry.
+static void media_that_emit_are_left_to_paths(void **state) {
+  (void)state;
+  static const char glow[] =
+      "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb Le\" [0 0 1]\n"
+      "MediumInterface \"\" \"glow\"\n"
+      "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"sphere\"\n";
+  static const char *const names[] = {"probabilistic", "photonmap", "sppm", "beams"};
+  for (int k = 0; k < 4; k++) {
+    assert_planned_to(1, glow, names[k], 0, 0, "medium \"glow\" emits light");
+    assert_planned_to(0, glow, names[k], 0, 0, NULL);
+  }
+  assert_planned_to(1, glow, "path", 0, 0, NULL);
 }
 
 static void radii_that_make_no_sense_are_refused(void **state) {
@@ -444,6 +465,7 @@ int main(void) {
       TEST(with_a_global_law_sppm_is_probabilistic),
       TEST(sppm_that_keeps_all_photons_is_probabilistic),
       TEST(scenes_without_media_have_the_same_bits_with_their_code),
+      TEST(media_that_emit_are_left_to_paths),
       TEST(radii_that_make_no_sense_are_refused),
   };
   return cmocka_run_group_tests_name("volume points", tests, NULL, NULL);
