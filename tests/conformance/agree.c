@@ -108,7 +108,8 @@ static void find_members(const struct options *options, struct report *report,
                              .iterations = ITERATIONS};
     if (!takes(report, subject, &plan)) continue;
     assert(members->n < MEMBERS);
-    plan.direct = (scene + k) % 2 ? DIRECT_NEE : DIRECT_PHOTONS;
+    bool nee = (scene + k) % 2 && !integrator_types[k]->only_photons;
+    plan.direct = nee ? DIRECT_NEE : DIRECT_PHOTONS;
     members->of[members->n++] = (struct member){.plan = plan, .weight = 1};
   }
 }
