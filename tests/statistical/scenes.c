@@ -45,7 +45,8 @@ static void make_coarse(struct camera *camera) {
   camera->crop_x = camera->crop_y = 0;
 }
 
-// Of what the film shows, twice the distance between the points that are seen at 1/4 and 3/4 of it.
+// Of what the film shows, twice the distance between the points that are seen at 1/4 and 3/4 of it;
+// of fog without end, of those at a distance of 1.
 static double picture_width(const struct scene *scene, const struct bvh *bvh) {
   struct vec p[2];
   for (int k = 0; k < 2; k++) {
@@ -53,8 +54,9 @@ static double picture_width(const struct scene *scene, const struct bvh *bvh) {
     struct ray ray = camera_ray(&scene->camera, x, y, (double[]){0, 0});
     struct hit hit;
     bvh_closest(bvh, &ray, &hit, 1);
-    assert_true(hit.primitive != PRIMITIVE_NONE);
-    p[k] = vec_along(ray.o, ray.d, hit.t);
+    bool met = hit.primitive != PRIMITIVE_NONE;
+    assert_true(met || scene->camera_medium != MEDIUM_NONE);
+    p[k] = vec_along(ray.o, ray.d, met ? hit.t : 1);
   }
   return 2 * vec_length(vec_sub(p[1], p[0]));
 }
