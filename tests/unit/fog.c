@@ -8,6 +8,7 @@
 #include "run/plan.h"
 #include "tests/light_fixture.h"
 #include "tests/unit/predict_fixture.h"
+#include "walk/light_path.h"
 
 static struct arena arena;
 
@@ -220,6 +221,10 @@ static void shapes(void **state) {
   assert_relative(p.divergent[499], (1 + p.pairs * r) / rho, 1e-13);
   assert_relative(p.bias[499], r, 1e-13);
   assert_relative(p.bias2[499], r * r, 1e-13);
+  cell.left_out = LIGHT_PATH_INDIRECT;
+  p = predicted(&scene, cell, &probe);
+  assert_true(p.pairs == 0);
+  cell.left_out = 0;
   probe.ends = false;
   p = predicted(&scene, cell, &probe);
   assert_relative(bias_theory_rate(&p), 2 * (1 - 4.0 / 7) / 3, 1e-14);
