@@ -99,6 +99,7 @@ static bool takes(struct report *report, const struct subject *subject,
 static void find_members(const struct options *options, struct report *report,
                          const struct subject *subject, const struct setup *setup, int scene,
                          struct members *members) {
+  int either = scene; // of the rows so far, those that find direct light in both ways
   *members = (struct members){0};
   for (int k = 0; integrator_types[k]; k++) {
     struct runs_plan plan = {.type = integrator_types[k],
@@ -108,8 +109,8 @@ static void find_members(const struct options *options, struct report *report,
                              .iterations = ITERATIONS};
     if (!takes(report, subject, &plan)) continue;
     assert(members->n < MEMBERS);
-    bool nee = (scene + k) % 2 && !integrator_types[k]->only_photons;
-    plan.direct = nee ? DIRECT_NEE : DIRECT_PHOTONS;
+    if (plan.type->photons && !plan.type->only_photons)
+      plan.direct = either++ % 2 ? DIRECT_NEE : DIRECT_PHOTONS;
     members->of[members->n++] = (struct member){.plan = plan, .weight = 1};
   }
 }

@@ -205,10 +205,10 @@ static void alpha_belongs_to_any_shape(void **state) {
 
 static void media_that_nothing_is_in_are_accepted(void **state) {
   (void)state;
-  scene_of(
-      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" \"milk\"\n" W
-      "MediumInterface \"fog\" \"fog\"\n" SPHERE "MediumInterface \"fog\" MediumInterface \"\"\n"
-      "LightSource \"point\"\n" SPHERE);
+  scene_of("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 2 3]\n" W
+           "MediumInterface \"fog\" \"fog\"\n" SPHERE
+           "MediumInterface \"fog\" MediumInterface \"\"\n"
+           "LightSource \"point\"\n" SPHERE);
 }
 
 // ---- Option, Accelerator ----
