@@ -118,6 +118,7 @@ static bool check_points(const struct cell *cell, const struct scene *scene,
 static const struct medium *glowing_medium(const struct scene *scene) {
   for (uint32_t k = 0; k < scene->n_media; k++) {
     struct medium_point most;
+    if (!scene_uses_medium(scene, k)) continue;
     scene->medium[k].type->peak(&scene->medium[k], &most);
     if (most.emission[0] > 0 || most.emission[1] > 0 || most.emission[2] > 0)
       return &scene->medium[k];

@@ -28,26 +28,26 @@ static bool any_see_through(const struct scene *scene) {
   return false;
 }
 
-// What some ray may be in: media that are only defined do not count.
+bool scene_uses_medium(const struct scene *scene, uint32_t row) {
+  if (scene->camera_medium == row) return true;
+  for (uint32_t i = 0; i < scene->n_lights; i++)
+    if (scene->light[i].medium == row) return true;
+  for (uint32_t i = 0; i < scene->n_shapes; i++)
+    if (scene->shape[i].inside == row || scene->shape[i].outside == row) return true;
+  return false;
+}
+
 struct media_use {
   bool any, coloured;
 };
 
-static void use_medium(const struct scene *scene, uint32_t row, struct media_use *use) {
-  if (row == MEDIUM_NONE) return;
-  const struct medium *medium = &scene->medium[row];
-  use->any = true;
-  use->coloured = use->coloured || !medium->type->is_gray(medium);
-}
-
 static struct media_use media_use(const struct scene *scene) {
   struct media_use use = {0};
-  if (scene->n_media == 0) return use;
-  use_medium(scene, scene->camera_medium, &use);
-  for (uint32_t i = 0; i < scene->n_lights; i++) use_medium(scene, scene->light[i].medium, &use);
-  for (uint32_t i = 0; i < scene->n_shapes; i++) {
-    use_medium(scene, scene->shape[i].inside, &use);
-    use_medium(scene, scene->shape[i].outside, &use);
+  for (uint32_t row = 0; row < scene->n_media; row++) {
+    const struct medium *medium = &scene->medium[row];
+    if (!scene_uses_medium(scene, row)) continue;
+    use.any = true;
+    use.coloured = use.coloured || !medium->type->is_gray(medium);
   }
   return use;
 }

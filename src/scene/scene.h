@@ -337,6 +337,9 @@ struct features {
 };
 struct features scene_features(const struct scene *);
 
+// Whether some ray may be in it: media that are only defined do not count.
+bool scene_uses_medium(const struct scene *, uint32_t row);
+
 // The registered rows, NULL-terminated, sorted by file name.
 extern const struct shape_type *const shape_types[];
 extern const struct light_type *const light_types[];

@@ -421,12 +421,16 @@ static void media_that_emit_are_left_to_paths(void **state) {
       "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb Le\" [0 0 1]\n"
       "MediumInterface \"\" \"glow\"\n"
       "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"sphere\"\n";
+  static const char unused[] =
+      "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb Le\" [0 0 1]\n"
+      "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"sphere\"\n";
   static const char *const names[] = {"probabilistic", "photonmap", "sppm", "beams"};
   for (int k = 0; k < 4; k++) {
     assert_planned_to(1, glow, names[k], 0, 0, "medium \"glow\" emits light");
     assert_planned_to(0, glow, names[k], 0, 0, NULL);
   }
   assert_planned_to(1, glow, "path", 0, 0, NULL);
+  assert_planned_to(1, unused, "probabilistic", 0, 0, NULL);
 }
 
 static void radii_that_make_no_sense_are_refused(void **state) {
