@@ -49,6 +49,10 @@ static void read_alpha(struct reader *reader, struct params *params, struct shap
   if (!input_is_given(params, "alpha")) return;
   struct input input = input_read_float(builder, params, "alpha", 1);
   if (!input.texture && input.value[0] >= 1) return;
+  if (shape->inside != shape->outside && builder->scene->material[shape->material].type->passed)
+    params_complain(params, "alpha",
+                    "an interface between media has no holes: rays that pass one would stay in "
+                    "the medium they are in");
   for (int c = 0; c < 3; c++)
     if (!(input.value[c] >= 0)) input.value[c] = 0;
   struct input *alpha = arena_new(builder->arena, struct input, 1);

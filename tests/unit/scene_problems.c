@@ -134,6 +134,9 @@ static const struct {
     {W FOG "MediumInterface \"fig\" \"fig\"\n" SPHERE, 4, 1, "unknown medium \"fig\""},
     {W FOG "MediumInterface \"fig\"\n" LIGHT, 4, 1,
      "LightSource \"point\": unknown medium \"fig\""},
+    {W FOG "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\n"
+           "Shape \"sphere\" \"float alpha\" 0.5",
+     5, 16, "an interface between media has no holes"},
     {FOG "MediumInterface \"fig\"\n Camera \"perspective\"", 3, 2,
      "Camera \"perspective\": unknown medium \"fig\""},
     // the order of things
