@@ -36,7 +36,7 @@ static bool write_one(const char *path, const struct local *local, int estimator
   for (int j = 0; j < measure->n_points; j++) {
     const struct eye_point *point = &local->map->point[j];
     if (!point->bsdf.type) continue;
-    struct vec n = eye_normal(point);
+    struct vec n = point->volume ? point->wo : eye_normal(point); // of a ball: as it is seen
     double radius = local_radius(local, j, estimator), on_film[6];
     project(finder, point->p, n, radius, on_film);
     fprintf(out.stream, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", measure->pixel[j].x,

@@ -138,6 +138,27 @@ static void a_disc_is_drawn_where_its_point_is_seen(void **state) {
   assert_true(file_exists(path_in("discs/discs/plane-quadratic-beam-cell001-3.csv")));
 }
 
+// Of a point in fog the disc that faces the eye: the outline of its ball.
+static void a_ball_is_drawn_as_it_is_seen(void **state) {
+  (void)state;
+  enum { PIXELS = 16 * 16 };
+  struct disc_row *row = arena_new(&arena, struct disc_row, PIXELS);
+  int on_floor = 0, in_fog = 0;
+  run("balls", "scene: tests/data/scenes/fog.pbrt\nintegrator: sppm\nradius: 0.1\nphotons: 50\n"
+               "iterations: 1\nruns: 1\ndepth: 2\nprobes: [[8, 12]]\nreference: none\n"
+               "discs: [1]\n");
+  int n = read_discs("balls/discs/fog-cell000-1.csv", row, PIXELS);
+  for (int j = 0; j < n; j++) {
+    struct vec p = vec(row[j].p[0], row[j].p[1], row[j].p[2]),
+               normal = vec(row[j].n[0], row[j].n[1], row[j].n[2]),
+               eye = vec_normalize(vec_sub(vec(0, 0.5, 3), p));
+    bool floor = fabs(p.y) < 1e-6;
+    floor ? on_floor++ : in_fog++;
+    assert_true(vec_dot(normal, floor ? vec(0, 1, 0) : eye) > 1 - 1e-6);
+  }
+  assert_true(on_floor > 10 && in_fog > 10);
+}
+
 static void times_ascend_with_the_images(void **state) {
   (void)state;
   run("times", BEAM "images: [1, 3]\n");
@@ -186,6 +207,7 @@ int main(void) {
       cmocka_unit_test(richardson_compares_with_half_the_radius),
       cmocka_unit_test(richardson_finds_the_bias),
       cmocka_unit_test(a_disc_is_drawn_where_its_point_is_seen),
+      cmocka_unit_test(a_ball_is_drawn_as_it_is_seen),
       cmocka_unit_test(times_ascend_with_the_images),
       cmocka_unit_test(what_cannot_be_kept_is_refused),
   };
