@@ -54,8 +54,7 @@ struct local *local_new(const struct measurement *measure, struct arena *arena) 
     field->n = arena_new(arena, double, size);
   }
   local->level = arena_new(arena, unsigned char, measure->n_points);
-  local->fixed = !measure->footprint && !measure->features.random_eye &&
-                 !(measure->skip_off & SKIP_STATIC_EYE);
+  local->fixed = measurement_is_static(measure);
   workers_new(local, arena);
   return local;
 }

@@ -22,7 +22,7 @@ enum vertex_pair {
   VERTEX_EMITTER,   // where on that light; light tracing: on the lens
 };
 
-// Vertex 0 is the first surface a path meets.
+// Vertex 0 is the first surface a path meets, or its first collision in a medium.
 static inline uint32_t pair_of_vertex(int vertex, enum vertex_pair pair) {
   return PAIR_VERTEX + PAIRS_PER_VERTEX * (uint32_t)vertex + (uint32_t)pair;
 }

@@ -1,5 +1,5 @@
 // The eye pass: where the pixels' rays meet surfaces that scatter light other than as a mirror or
-// clear glass does, past those that do.
+// clear glass does, past those that do, or collide in a medium before.
 #ifndef WALK_EYE_H
 #define WALK_EYE_H
 

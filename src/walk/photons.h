@@ -1,4 +1,4 @@
-// The photon pass: paths from the lights, stored where they meet surfaces.
+// The photon pass: paths from the lights, stored where they meet surfaces and collide in media.
 #ifndef WALK_PHOTONS_H
 #define WALK_PHOTONS_H
 

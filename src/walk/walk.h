@@ -30,7 +30,7 @@ struct walk {
   uint64_t iteration;
 
   int n;           // paths alive, packed at the front of the arrays below
-  int vertex;      // how many surfaces they have met: 0 before the first trace
+  int vertex;      // how many times they have been scattered: 0 before the first trace
   uint64_t *path;  // [n] number of the path, its identity for random numbers
   struct ray *ray; // d of unit length
   struct hit *hit;

@@ -4,8 +4,7 @@
 //   `point3 p0`, `p1`         the box's corners in the medium's space, default 0 0 0 and 1 1 1
 //   `rgb sigma_a`, `rgb sigma_s`  default 1, times `float scale`; `float g`
 //   `spectrum Le`             emitted radiance, times `float Lescale` [nx ny nz], default one
-//   sample
-//                             of 1, which as in pbrt-v4 falls off to the faces
+//                             sample of 1, which as in pbrt-v4 falls off to the faces
 // Lengths are the world's: a transformation that enlarges the box leaves sigma_a as it is.
 #include "scene/medium/coefficients.h"
 #include "scene/medium/majorant.h"
