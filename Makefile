@@ -62,6 +62,8 @@ conformance_sources := $(sort $(wildcard tests/conformance/*.c))
 conformance := $(out)/tests/conformance/conformance
 fuzz_sources := $(sort $(wildcard tests/fuzz/*.c))
 fuzz_programs := $(fuzz_sources:tests/%.c=$(out)/tests/%)
+bench_sources := $(sort $(wildcard tests/bench/*.c tests/bench/part/*.c))
+bench := $(out)/tests/bench/bench
 cli_tests := $(filter-out tests/cli/lib.sh,$(sort $(wildcard tests/cli/*.sh)))
 
 quiet = $(if $(V),,@printf '  %-4s %s\n' $1 $2;)
@@ -174,7 +176,7 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 	@mkdir -p $(@D)
 	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
--include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources)) $(generated))
+-include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources) $(bench_sources)) $(generated))
 
 # ---- tests ----
 .PHONY: test test-long conformance test-programs test-asan test-tsan test-bits test-plants validate
@@ -250,6 +252,45 @@ test-plants:
 validate: $(binary)
 	$(binary) validate
 
+# ---- benchmarks: tests/bench, a part a file in part/ ----
+BENCH =# the beginning of PART/ROW, as the table names them: only these
+REPETITIONS =# of each row; empty: the parts' own
+PERF = ../shared/perf# folder of scenes that pbrt-v4 was timed on; an absent one is skipped
+EMBREE = $(if $(wildcard /usr/include/embree3/rtcore.h),1)# 1: rays against Embree, too
+FIGURES = build/bench.csv
+
+$(gen)/bench.c: FORCE | $(gen)
+	@{ echo '// Written by the build from the names of the files in tests/bench/part.'; \
+	echo '#include "tests/bench/bench.h"'; echo '#include <stddef.h>'; \
+	$(call slot_table,part,tests/bench/part); } >$@.new; $(keep)
+
+$(gen)/embree: FORCE | $(gen)
+	@echo '$(EMBREE)' >$@.new; $(keep)
+	@$(if $(filter command,$(origin EMBREE)),CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages peer)
+
+$(gen)/bench.o: $(gen)/bench.c $(gen)/flags
+	@$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+
+$(call object,tests/bench/embree.c): CPPFLAGS += $(if $(EMBREE),-DBENCH_EMBREE)
+$(call object,tests/bench/embree.c): $(gen)/embree
+$(call object,$(bench_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_build)
+	@mkdir -p $(@D)
+	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+# Rays are counted where the walks ask for them.
+$(bench): $(call object,$(bench_sources)) $(gen)/bench.o $(library) $(gen)/version.o
+	@mkdir -p $(@D)
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) -Wl,--wrap=bvh_closest $^ $(LDLIBS) $(if $(EMBREE),-lembree3) -o $@
+
+.PHONY: bench bench-compare bench-program
+bench-program: $(bench)
+
+bench: $(bench)
+	@$(bench) --perf $(PERF) --csv $(FIGURES) $(addprefix --repetitions ,$(REPETITIONS)) $(BENCH)
+
+bench-compare: bench
+	@tests/bench/compare tests/bench/figures.csv $(FIGURES)
+
 # ---- experiments ----
 # make experiment-NAME runs experiments/NAME.yaml, fits and plots it into results/NAME. One that has to be
 # run in another way says how in experiments/NAME.sh PHOTONLAB RESULTS QUALITY.
@@ -315,6 +356,8 @@ help:
 	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
 	@echo 'make conformance       images against pbrt-v4, as precise as the stored ones (CONFORMANCE=folder'
 	@echo '                       SCENES=folder SCENE=name IMAGES=1)'
+	@echo 'make bench             what everything costs (BENCH=PART[/ROW] EMBREE=1 PERF=folder);'
+	@echo '                       bench-compare: against tests/bench/figures.csv'
 	@echo 'make validate          the built-in checks against closed forms'
 	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
 	@for name in $(experiments); do echo "                         $$name"; done

@@ -1,0 +1,112 @@
+#include "tests/bench/measure.h"
+
+#include "estimate/photon_map.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const scenes[] = {"box", "torus", "cornell-gray", "cornell-torus-glass"};
+
+struct job {
+  struct measurement measure;
+  struct photon_map *map;
+  struct arena *arena;
+  double *frame, r;
+  int64_t *count; // [n_points] photons found
+};
+
+static void gather(void *data, int repetition) {
+  struct job *job = data;
+  (void)repetition;
+  memset(job->frame, 0, (size_t)photon_map_frame(&job->measure) * sizeof *job->frame);
+  for (int j = 0; j < job->measure.n_points; j++)
+    photon_map_gather(job->map, j, &job->r, &job->count[j], job->frame);
+}
+
+static uint64_t hash(const void *data) {
+  const struct job *job = data;
+  return bench_hash(job->frame, (size_t)photon_map_frame(&job->measure) * sizeof *job->frame);
+}
+
+static void build(void *data, int repetition) {
+  struct photon_field *field = &((struct job *)data)->map->field[ON_SURFACE];
+  (void)repetition;
+  grid_build(&field->grid, &field->photons, ((struct job *)data)->r, ((struct job *)data)->arena);
+}
+
+static uint64_t hash_grid(const void *data) {
+  const struct grid *grid = &((const struct job *)data)->map->field[ON_SURFACE].grid;
+  return bench_hash(grid->photon, (size_t)grid->count * sizeof *grid->photon);
+}
+
+// grid: by it, else by the tree for any radius.
+static struct job *job_new(const struct bench_scene *scene, bool grid, struct arena *arena) {
+  struct job *job = arena_new(arena, struct job, 1);
+  job->measure = measure_of(scene, false);
+  job->r = 0.05;
+  job->arena = arena_new(arena, struct arena, 1);
+  *job->arena = arena_reserve();
+  job->map = photon_map_new(&job->measure, job->arena);
+  job->frame = arena_new(arena, double, photon_map_frame(&job->measure));
+  job->count = arena_new(arena, int64_t, job->measure.n_points);
+  const double r[POINT_KINDS] = {grid ? job->r : INFINITY, grid ? job->r : INFINITY};
+  photon_map_see(job->map, 1);
+  photon_map_emit(job->map, 1, r);
+  gather(job, 0);
+  return job;
+}
+
+// The same photons in each disc, and the same sums up to their order.
+static void check(const struct job *grid, const struct job *tree, const char *name) {
+  bool same = true;
+  for (int j = 0; j < grid->measure.n_points; j++) same &= grid->count[j] == tree->count[j];
+  for (long k = 0; k < photon_map_frame(&grid->measure); k++)
+    same &= fabs(grid->frame[k] - tree->frame[k]) <= 1e-10 * fabs(tree->frame[k]);
+  bench_check(same, "gathers by the grid and by the tree differ", name);
+}
+
+static double found(const struct job *job) {
+  double n = 0;
+  for (int j = 0; j < job->measure.n_points; j++) n += (double)job->count[j];
+  return n / job->measure.n_points;
+}
+
+static void add(struct bench *bench, const struct bench_scene *scene) {
+  struct job *job = job_new(scene, true, bench->arena);
+  struct job *tree = job_new(scene, false, bench->arena);
+  check(job, tree, scene->name);
+  double photons = (double)job->map->field[ON_SURFACE].photons.count;
+  bench_add(bench, "gather",
+            (struct row){.name = arena_format(bench->arena, "%s/points", scene->name),
+                         .kind = RATE,
+                         .unit = "Mpoints/s",
+                         .work = 1e-6 * job->measure.n_points,
+                         .body = gather,
+                         .data = job,
+                         .hash = hash});
+  bench_add(bench, "gather",
+            (struct row){.name = arena_format(bench->arena, "%s/photons", scene->name),
+                         .kind = COUNT,
+                         .unit = "per point",
+                         .work = found(job)});
+  bench_add(bench, "gather",
+            (struct row){.name = arena_format(bench->arena, "%s/grid", scene->name),
+                         .kind = RATE,
+                         .unit = "Mphotons/s",
+                         .work = 1e-6 * photons,
+                         .body = build,
+                         .data = job,
+                         .hash = hash_grid});
+}
+
+static void rows(struct bench *bench) {
+  for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; s++) {
+    const struct bench_scene *scene =
+        bench_wants(bench, "gather", scenes[s]) ? bench_scene(bench, scenes[s]) : NULL;
+    if (scene) add(bench, scene);
+  }
+}
+
+const struct part_type part_gather = {
+    "gather", "density estimates of radius 0.05 at a film's points; the photons' grid built", 5,
+    rows};
