@@ -8,7 +8,8 @@ const struct skip_row skip_rows[] = {
      "one eye pass for all iterations where the camera is not random"},
     {"unseen", SKIP_UNSEEN, "photons in grid cells that no point can see are not stored"},
     {"probes", SKIP_PROBES, "only the pixels that are asked for are computed"},
-    {"media", SKIP_MEDIA, "no medium is asked for, and no photon in one stored, where there are none"},
+    {"media", SKIP_MEDIA,
+     "no medium is asked for, and no photon in one stored, where there are none"},
 };
 const int n_skip_rows = sizeof skip_rows / sizeof *skip_rows;
 
@@ -29,8 +30,8 @@ bool skip_read(const char *names, unsigned *off, struct problem *problem) {
       for (int k = 0; k < n_skip_rows; k++) *off |= skip_rows[k].bit;
     else
       return problem_set(problem,
-                         "--no-skip: unknown name '%.*s'; known: all, gray, static-eye, "
-                         "unseen, probes, media (see 'photonlab list skips')",
+                         "--no-skip: unknown name '%.*s'; known: all, and those of 'photonlab list "
+                         "skips'",
                          (int)length, at);
     if (!at[length]) return true;
     at += length + 1;
