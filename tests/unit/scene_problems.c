@@ -111,6 +111,7 @@ static const struct {
     {W HAZE "\"float scale\" [-1]", 2, 49, "\"scale\" must not be negative"},
     {W HAZE "\"rgb sigma_s\" [1 -1 1]", 2, 49, "\"sigma_s\" must not be negative"},
     {W HAZE "\"rgb sigma_a\" [1e200 1 1] \"float scale\" 1e200", 2, 75, "too large"},
+    {W HAZE "\"float scale\" 1e-309", 2, 49, "too small, but not 0"},
     {W HAZE "\"float Lescale\" [-1]", 2, 49, "\"Lescale\" must not be negative"},
     {W HAZE "\"float phase\" [1]", 2, 49, "phase"},
     {W HAZE "\"string preset\" \"skimmilk\"", 2, 49, "did you mean \"Skimmilk\"?"},

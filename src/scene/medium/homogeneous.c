@@ -44,6 +44,9 @@ static bool read(struct scene_builder *builder, struct params *params, struct me
     if (!isfinite(*emission)) return params_complain(params, "Lescale", "it emits too much");
   }
   homogeneous->majorant = medium_largest(&homogeneous->point);
+  // The farthest a path flies is -ln 2^-53 < 37 of its mean: a number, or it would never end.
+  if (homogeneous->majorant > 0 && !isfinite(37 / homogeneous->majorant))
+    return params_complain(params, "scale", "the medium's coefficients are too small, but not 0");
   medium->data = homogeneous;
   return true;
 }
