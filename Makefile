@@ -256,7 +256,8 @@ validate: $(binary)
 BENCH =# the beginning of PART/ROW, as the table names them: only these
 REPETITIONS =# of each row; empty: the parts' own
 PERF = ../shared/perf# folder of scenes that pbrt-v4 was timed on; an absent one is skipped
-EMBREE = $(if $(wildcard /usr/include/embree3/rtcore.h),1)# 1: rays against Embree, too
+embree_header := $(wildcard /usr/include/embree3/rtcore.h)
+EMBREE = $(if $(embree_header),1)# 1: rays against Embree, too; it is installed if need be
 FIGURES = build/bench.csv
 
 $(gen)/bench.c: FORCE | $(gen)
@@ -266,7 +267,7 @@ $(gen)/bench.c: FORCE | $(gen)
 
 $(gen)/embree: FORCE | $(gen)
 	@echo '$(EMBREE)' >$@.new; $(keep)
-	@$(if $(filter command,$(origin EMBREE)),CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages peer)
+	@$(if $(EMBREE),$(if $(embree_header),,CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages peer))
 
 $(gen)/bench.o: $(gen)/bench.c $(gen)/flags
 	@$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@

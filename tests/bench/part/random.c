@@ -1,19 +1,24 @@
 #include "tests/bench/bench.h"
 
-#include "numeric/rng.h"
+#include "numeric/rng_level.h"
 
-enum { N = 4096, ROUNDS = 256 };
+enum { N = 4096, PAIRS = 256 };
 
 static struct random {
   uint64_t path[N];
+  struct rng_level level; // fill NULL: the one that the program chooses
   double u[2][N];
-} state;
+} state[RNG_MOST_LEVELS + 1];
 
 static void fill(void *data, int repetition) {
   struct random *random = data;
+  struct rng_key key = rng_key(1, 1, RNG_TEST);
   (void)repetition;
-  for (uint32_t pair = 0; pair < ROUNDS; pair++)
-    rng_fill(rng_key(1, 1, RNG_TEST), 1, random->path, N, pair, random->u[0], random->u[1]);
+  for (uint32_t pair = 0; pair < PAIRS; pair++)
+    if (random->level.fill)
+      random->level.fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
+    else
+      rng_fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
 }
 
 static uint64_t hash(const void *data) {
@@ -21,29 +26,42 @@ static uint64_t hash(const void *data) {
   return bench_hash(random->u, sizeof random->u);
 }
 
-// One at a time takes the scalar way.
-static bool equals_scalar(const struct random *random) {
+static void add(struct bench *bench, struct random *random, const char *name, const char *base) {
+  bench_add(bench, "random",
+            (struct row){.name = name,
+                         .kind = RATE,
+                         .unit = "Mnumbers/s",
+                         .work = 2e-6 * N * PAIRS,
+                         .body = fill,
+                         .data = random,
+                         .hash = hash,
+                         .base = base});
+}
+
+// One path at a time: no block of any level is full.
+static bool equals_single(const struct random *random) {
   for (int j = 0; j < N; j++) {
     double u0, u1;
-    rng_fill(rng_key(1, 1, RNG_TEST), 1, &random->path[j], 1, ROUNDS - 1, &u0, &u1);
+    rng_fill(rng_key(1, 1, RNG_TEST), 1, &random->path[j], 1, PAIRS - 1, &u0, &u1);
     if (u0 != random->u[0][j] || u1 != random->u[1][j]) return false;
   }
   return true;
 }
 
 static void rows(struct bench *bench) {
-  for (int j = 0; j < N; j++) state.path[j] = (uint64_t)j;
-  fill(&state, 0);
-  bench_check(equals_scalar(&state), "a batch and single paths differ", "random");
-  bench_add(bench, "random",
-            (struct row){.name = "fill",
-                         .kind = RATE,
-                         .unit = "Mnumbers/s",
-                         .work = 2e-6 * N * ROUNDS,
-                         .body = fill,
-                         .data = &state,
-                         .hash = hash});
+  struct rng_level level[RNG_MOST_LEVELS];
+  int n = rng_levels(level);
+  for (int k = 0; k <= n; k++) {
+    struct random *random = &state[k];
+    for (int j = 0; j < N; j++) random->path[j] = (uint64_t)j;
+    if (k < n) random->level = level[k];
+    const char *name = k < n ? level[k].name : "fill";
+    fill(random, 0);
+    bench_check(equals_single(random), "a batch and single paths differ", name);
+    add(bench, random, name, k ? level[0].name : NULL);
+  }
 }
 
 const struct part_type part_random = {
-    "random", "random numbers, in pairs for batches of 4096 paths", 9, rows};
+    "random", "numbers for batches of 4096 paths, by each level and the one that is chosen", 9,
+    rows};
