@@ -7,10 +7,15 @@
 static struct arena arena;
 
 // An image of 7 x 7 texels in three colours that differ by factors of hundreds, some of them black.
-#define IMAGE "light-rows.pfm"
+#define IMAGE "image.pfm"
+
+static char image_folder[] = P_tmpdir "/photonlab-lights-XXXXXX", image_path[128];
 
 static inline void write_image(void) {
-  FILE *file = fopen(P_tmpdir "/" IMAGE, "wb");
+  assert_non_null(mkdtemp(image_folder));
+  light_folder = image_folder;
+  snprintf(image_path, sizeof image_path, "%s/" IMAGE, image_folder);
+  FILE *file = fopen(image_path, "wb");
   assert_non_null(file);
   fprintf(file, "PF\n7 7\n-1\n");
   for (int k = 0; k < 7 * 7; k++) {
@@ -19,6 +24,11 @@ static inline void write_image(void) {
     fwrite(rgb, sizeof *rgb, 3, file);
   }
   fclose(file);
+}
+
+static inline void remove_image(void) {
+  unlink(image_path);
+  rmdir(image_folder);
 }
 
 // One row of light_types, or a variant of it. Two colours, so that channels cannot be mixed up. The

@@ -18,10 +18,14 @@
 
 static const double pi = 0x1.921fb54442d18p+1;
 
+// Where the files are written; a test that leaves any there sets a folder of its own.
+static const char *light_folder = P_tmpdir;
+
 // Reads `world` after a camera; false: problem set.
 static inline bool light_scene_try(const char *world, struct arena *arena, struct scene *scene,
                                    struct problem *problem) {
-  char path[] = P_tmpdir "/photonlab-light-XXXXXX";
+  char path[128];
+  snprintf(path, sizeof path, "%s/photonlab-light-XXXXXX", light_folder);
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   FILE *file = fdopen(fd, "w");

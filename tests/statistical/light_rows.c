@@ -220,6 +220,6 @@ int main(void) {
        NULL},
   };
   int failed = cmocka_run_group_tests_name("light_rows", tests, NULL, NULL);
-  unlink(P_tmpdir "/" IMAGE);
+  remove_image();
   return failed;
 }

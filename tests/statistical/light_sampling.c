@@ -330,6 +330,6 @@ int main(void) {
       {"the p-values of all are uniform", test_p_values, NULL, NULL, NULL},
   };
   int failed = cmocka_run_group_tests_name("light_sampling", tests, NULL, NULL);
-  unlink(P_tmpdir "/" IMAGE);
+  remove_image();
   return failed;
 }
