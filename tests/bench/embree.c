@@ -31,7 +31,7 @@ static bool only_triangles(const struct scene *scene) {
   return scene->n_triangles == scene->n_primitives;
 }
 
-struct embree *embree_new(const struct scene *scene, struct arena *arena) {
+struct embree *embree_new(const struct scene *scene, bool robust, struct arena *arena) {
   if (!only_triangles(scene)) return NULL;
   struct embree *embree = arena_new(arena, struct embree, 1);
   embree->device = rtcNewDevice("threads=1");
@@ -46,6 +46,7 @@ struct embree *embree_new(const struct scene *scene, struct arena *arena) {
   rtcCommitGeometry(mesh);
   rtcAttachGeometry(embree->scene, mesh);
   rtcReleaseGeometry(mesh);
+  rtcSetSceneFlags(embree->scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcCommitScene(embree->scene);
   return embree;
 }
@@ -217,10 +218,12 @@ int embree_differs(const struct embree_rays *theirs, const struct embree_mode *m
   return n;
 }
 
+uint32_t embree_primitive(const struct embree_rays *rays, int j) { return rays->primitive[j]; }
+
 #else
 const struct embree_mode embree_modes[] = {{NULL, false, NULL}};
-struct embree *embree_new(const struct scene *scene, struct arena *arena) {
-  (void)scene, (void)arena;
+struct embree *embree_new(const struct scene *scene, bool robust, struct arena *arena) {
+  (void)scene, (void)robust, (void)arena;
   return NULL;
 }
 void embree_release(struct embree *embree) { (void)embree; }
@@ -233,5 +236,9 @@ int embree_differs(const struct embree_rays *theirs, const struct embree_mode *m
                    const struct rays *ours) {
   (void)theirs, (void)mode, (void)ours;
   return 0;
+}
+uint32_t embree_primitive(const struct embree_rays *rays, int j) {
+  (void)rays, (void)j;
+  return PRIMITIVE_NONE;
 }
 #endif

@@ -6,8 +6,8 @@
 
 struct embree; // NULL where the program was built without it
 
-// The scene holds triangles alone, else NULL.
-struct embree *embree_new(const struct scene *, struct arena *);
+// The scene holds triangles alone, else NULL. robust: by its flag of that name.
+struct embree *embree_new(const struct scene *, bool robust, struct arena *);
 void embree_release(struct embree *);
 
 // Its ways to trace rays. `any`: blocked or not, else the closest hit.
@@ -25,5 +25,8 @@ struct embree_rays *embree_rays_new(const struct embree *, const struct rays *, 
 
 // After a trace: of how many rays the answer is another than ours, beyond what float can tell.
 int embree_differs(const struct embree_rays *, const struct embree_mode *, const struct rays *);
+
+// The primitive that ray j hit, or PRIMITIVE_NONE.
+uint32_t embree_primitive(const struct embree_rays *, int j);
 
 #endif

@@ -97,6 +97,53 @@ struct rays rays_to_lights(const struct bench_scene *scene, const struct rays *f
   return finished(scene, rays);
 }
 
+static const struct shape *largest_shape(const struct scene *scene) {
+  const struct shape *largest = &scene->shape[0];
+  for (uint32_t k = 1; k < scene->n_shapes; k++)
+    if (scene->shape[k].count > largest->count) largest = &scene->shape[k];
+  return largest;
+}
+
+static struct vec vertex_of(const struct scene *scene, const struct shape *shape, uint32_t triangle,
+                            int corner) {
+  const float *p = scene->position[scene->triangle[shape->local + triangle][corner]];
+  return vec((double)p[0], (double)p[1], (double)p[2]);
+}
+
+static struct vec middle_of(const struct scene *scene, const struct shape *shape) {
+  struct vec sum = vec(0, 0, 0);
+  for (uint32_t k = 0; k < shape->count; k++)
+    sum = vec_along(sum, vertex_of(scene, shape, k, 0), 1.0 / shape->count);
+  return sum;
+}
+
+// Every other one at a vertex.
+struct rays rays_at_edges(const struct bench_scene *of, int n, struct arena *arena) {
+  const struct scene *scene = &of->scene;
+  const struct shape *shape = largest_shape(scene);
+  struct vec middle = middle_of(scene, shape);
+  struct rays rays = rays_new(n, arena);
+  struct rng_key key = rng_key(2, 1, RNG_TEST);
+  for (uint64_t j = 0; j < (uint64_t)n; j++) {
+    double pick, along, x, y;
+    rng_fill(key, 1, &j, 1, 0, &pick, &along);
+    rng_fill(key, 1, &j, 1, 1, &x, &y);
+    uint32_t triangle = (uint32_t)(pick * shape->count);
+    int corner = (int)(3 * x);
+    struct vec a = vertex_of(scene, shape, triangle, corner);
+    struct vec edge = vec_sub(vertex_of(scene, shape, triangle, (corner + 1) % 3), a);
+    struct vec o = vec_add(middle, vec(0.01 * x, 0.01 * y, 0.01 * pick));
+    struct vec d = vec_sub(vec_along(a, edge, j % 2 ? along : 0), o);
+    add(&rays, &(struct ray){o, d, INFINITY, PRIMITIVE_NONE});
+  }
+  return finished(of, rays);
+}
+
+bool rays_hit_largest(const struct bench_scene *of, uint32_t primitive) {
+  const struct shape *shape = largest_shape(&of->scene);
+  return primitive >= shape->first && primitive - shape->first < shape->count;
+}
+
 void rays_check(const struct bench_scene *scene, const struct rays *rays, const char *name) {
   enum { MOST = 4096 };
   static struct hit hit[MOST];

@@ -72,7 +72,7 @@ void report_csv(FILE *out, const char *part, const struct row *row, const struct
 }
 
 void report_table_header(const struct part_type *part) {
-  printf("\n%s: %s\n  %-42s %10s %21s %-12s %10s  %s\n", part->name, part->about, "", "value",
+  printf("\n%s: %s\n  %-46s %10s %21s %-12s %10s  %s\n", part->name, part->about, "", "value",
          "quartiles", "unit", "calibrated", "ratio");
 }
 
@@ -83,7 +83,7 @@ void report_table(const struct row *row, const struct figure *f) {
     snprintf(calibrated, sizeof calibrated, "%.4g", f->relative);
   }
   if (!isnan(f->ratio)) snprintf(ratio, sizeof ratio, "%.2f of %s", f->ratio, row->base);
-  printf("  %-42s %10.4g %21s %-12s %10s  %s\n", row->name, f->value, spread, row->unit, calibrated,
-         ratio);
+  printf("  %-46s %10.*g %21s %-12s %10s  %s\n", row->name, row->kind == COUNT ? 6 : 4, f->value,
+         spread, row->unit, calibrated, ratio);
   fflush(stdout);
 }

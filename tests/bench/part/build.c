@@ -41,7 +41,7 @@ static void peer(void *data, int repetition) {
   struct job *job = data;
   struct arena arena = job->arena;
   (void)repetition;
-  embree_release(embree_new(job->scene, &arena));
+  embree_release(embree_new(job->scene, false, &arena));
 }
 
 static void add_row(struct bench *bench, struct job *job, const char *scene, const char *who,

@@ -45,6 +45,13 @@ static uint64_t hash_any(const void *data) {
   return bench_hash(job->blocked, (size_t)job->rays.n);
 }
 
+static void add_count(struct bench *bench, const char *name, int n, int of) {
+  bench_add(
+      bench, "rays",
+      (struct row){
+          .name = name, .kind = COUNT, .unit = arena_format(bench->arena, "of %d", of), .work = n});
+}
+
 // The peer's modes, and of how many rays the answer of any differs from ours.
 static void add_peer(struct bench *bench, const struct embree *embree, struct job *job,
                      const char *name, bool shadow, bool coherent) {
@@ -65,11 +72,7 @@ static void add_peer(struct bench *bench, const struct embree *embree, struct jo
                            .body = mode->trace,
                            .data = theirs});
   }
-  bench_add(bench, "rays",
-            (struct row){.name = arena_format(bench->arena, "%s/embree-differs", name),
-                         .kind = COUNT,
-                         .unit = arena_format(bench->arena, "of %d", rays->n),
-                         .work = differ});
+  add_count(bench, arena_format(bench->arena, "%s/embree-differs", name), differ, rays->n);
 }
 
 // The first mode of a peer is what ours is compared to.
@@ -93,8 +96,31 @@ static void add_kind(struct bench *bench, const struct bench_scene *scene,
                          .base = base});
 }
 
+static void add_leaks_of_peer(struct bench *bench, const struct bench_scene *scene,
+                              const struct rays *rays, bool robust) {
+  struct embree *embree = embree_new(&scene->scene, robust, bench->arena);
+  if (!embree) return;
+  struct embree_rays *peer = embree_rays_new(embree, rays, false, bench->arena);
+  int n = 0;
+  embree_modes[0].trace(peer, 0);
+  for (int j = 0; j < rays->n; j++) n += !rays_hit_largest(scene, embree_primitive(peer, j));
+  add_count(bench, robust ? "leaks/embree-robust" : "leaks/embree-1", n, rays->n);
+  embree_release(embree);
+}
+
+// Rays from inside a closed mesh that do not hit it.
+static void add_leaks(struct bench *bench) {
+  const struct bench_scene *scene = bench_scene(bench, "ball-1e5");
+  struct rays rays = rays_at_edges(scene, PHOTON_RAYS, bench->arena);
+  int n = 0;
+  for (int j = 0; j < rays.n; j++) n += !rays_hit_largest(scene, rays.hit[j].primitive);
+  add_count(bench, "leaks/photonlab", n, rays.n);
+  add_leaks_of_peer(bench, scene, &rays, false);
+  add_leaks_of_peer(bench, scene, &rays, true);
+}
+
 static void add_scene(struct bench *bench, const struct bench_scene *scene) {
-  struct embree *embree = embree_new(&scene->scene, bench->arena);
+  struct embree *embree = embree_new(&scene->scene, false, bench->arena);
   struct rays camera = rays_of_camera(scene, bench->arena);
   struct rays photons = rays_of_photons(scene, PHOTON_RAYS, bench->arena);
   add_kind(bench, scene, embree, photons, "photon", false);
@@ -106,6 +132,7 @@ static void add_scene(struct bench *bench, const struct bench_scene *scene) {
 }
 
 static void rows(struct bench *bench) {
+  if (bench_wants(bench, "rays", "leaks")) add_leaks(bench);
   for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; s++)
     if (bench_wants(bench, "rays", scenes[s])) add_scene(bench, bench_scene(bench, scenes[s]));
 }
