@@ -287,10 +287,10 @@ $(bench): $(call object,$(bench_sources)) $(gen)/bench.o $(library) $(gen)/versi
 bench-program: $(bench)
 
 bench: $(bench)
-	@$(bench) --perf $(PERF) --csv $(FIGURES) $(addprefix --repetitions ,$(REPETITIONS)) $(BENCH)
+	@$(bench) --perf "$(PERF)" --csv "$(FIGURES)" $(addprefix --repetitions ,$(REPETITIONS)) $(BENCH)
 
 bench-compare: bench
-	@tests/bench/compare tests/bench/figures.csv $(FIGURES)
+	@tests/bench/compare tests/bench/figures.csv "$(FIGURES)"
 
 # ---- experiments ----
 # make experiment-NAME runs experiments/NAME.yaml, fits and plots it into results/NAME. One that has to be

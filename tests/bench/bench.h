@@ -10,11 +10,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// `Rate` is work a second, `cost` seconds a unit of work, `count` a number that is not timed.
+// Work a second, seconds a unit of work, or a number that is not timed.
 enum quantity_kind { RATE, COST, COUNT };
 
 struct row {
-  const char *name; // within the part; the words before a slash may select it
+  const char *name; // within the part; in words with slashes between, from the scene on
   enum quantity_kind kind;
   const char *unit; // of the figure
   double work;      // of one repetition, in the unit's terms; a count: the number itself
