@@ -3,12 +3,6 @@
 #include "numeric/elementary.h"
 #include "walk/dimension.h"
 
-static double largest(const double *value, int n) {
-  double most = value[0];
-  for (int c = 1; c < n; c++) most = most < value[c] ? value[c] : most;
-  return most;
-}
-
 // Distance to the next collision of density `majorant`.
 static double free_path(double u, double majorant) { return -num_log(1 - u) / majorant; }
 
@@ -24,7 +18,7 @@ static bool collides(struct walk *walk, int j, const struct medium_point *at, do
     real[c] = walk->throughput[c][j] * sigma_t;
     null[c] = walk->throughput[c][j] * (majorant - sigma_t);
   }
-  double p_real = largest(real, n), p_null = largest(null, n);
+  double p_real = walk_largest(real, n), p_null = walk_largest(null, n);
   double p = p_real + p_null > 0 ? p_real / (p_real + p_null) : 1; // carries nothing at all
   if (u < p) {
     for (int c = 0; c < n; c++) weight[c] = walk->throughput[c][j] / (majorant * p);

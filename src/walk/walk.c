@@ -186,19 +186,13 @@ struct bsdf walk_bsdf(const struct walk *walk, int j, const struct surface *surf
   return surface_bsdf(walk->scene, surface, walk->features.random_materials ? walk->u[2][1][j] : 0);
 }
 
-static double largest(const double *value, int n) {
-  double most = value[0];
-  for (int c = 1; c < n; c++) most = most < value[c] ? value[c] : most;
-  return most;
-}
-
 bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
                   const struct bsdf *bsdf) {
   double u[3] = {walk->u[0][0][j], walk->u[0][1][j], walk->u[1][0][j]};
   struct bsdf_sample sample;
   struct vec wo = vec_scale(walk->ray[j].d, -1);
   if (!bsdf_sample(bsdf, wo, u, walk->transport, &sample)) return false;
-  double survive = largest(sample.weight, walk->n_channels) * sample.eta2;
+  double survive = walk_largest(sample.weight, walk->n_channels) * sample.eta2;
   if (!(walk->u[1][1][j] < survive)) return false;
   // A weight above 1 always survives and keeps its weight.
   double divisor = survive < 1 ? survive : 1;
@@ -222,7 +216,7 @@ bool walk_scatter_in_medium(struct walk *walk, int j) {
     double sigma_t = at->sigma_a[c] + at->sigma_s[c];
     albedo[c] = sigma_t > 0 ? at->sigma_s[c] / sigma_t : 0;
   }
-  double survive = largest(albedo, walk->n_channels);
+  double survive = walk_largest(albedo, walk->n_channels);
   if (!(walk->u[1][1][j] < survive)) return false;
   struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
   struct bsdf_sample sample;

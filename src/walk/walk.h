@@ -78,6 +78,13 @@ struct walk {
   } crossing;
 };
 
+// Of n channels: what roulette and collisions go by, so that one channel equals three.
+static inline double walk_largest(const double *value, int n) {
+  double most = value[0];
+  for (int c = 1; c < n; c++) most = most < value[c] ? value[c] : most;
+  return most;
+}
+
 struct walk *walk_new(const struct scene *, const struct bvh *, struct features, struct arena *);
 
 // From now on eye paths carry their differentials.
