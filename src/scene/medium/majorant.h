@@ -153,8 +153,8 @@ static inline bool majorant_piece(const struct majorant *majorant, const struct 
 
 // Whether every direction crosses the box clearly: its three coordinates are not nearly the same.
 // Then |d| of u is, along some axis, at least 1e-7 of the terms it is the sum of: the smallest
-// singular value of rows of unit length is at least two thirds of their determinant, 1e-6. Of lengths
-// within 1e-100 and 1e100 squares, and ratios of squares, are numbers.
+// singular value of rows of unit length is at least two thirds of their determinant, 1e-6. Of
+// lengths within 1e-100 and 1e100 squares, and ratios of squares, are numbers.
 static inline bool majorant_is_invertible(const struct transform *unit_from_world) {
   struct transform rows = *unit_from_world;
   for (int i = 0; i < 3; i++) {
