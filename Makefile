@@ -42,6 +42,11 @@ FLAGS.coverage = -fsanitize=fuzzer-no-link -fprofile-instr-generate -fcoverage-m
 CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
   -ffp-contract=off -fno-builtin -fno-math-errno -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
 CPPFLAGS := -Isrc -I.
+# NAME.lanes.c is compiled once for each of these (src/base/level.h).
+LANES.scalar =
+LANES.avx2 = -mavx2
+LANES.avx512 = -mavx512f -mavx512vl -mavx512dq -mavx512bw
+levels := scalar $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),avx2 avx512)
 LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -ljpeg -lz -lm
 
 # ---- files ----
@@ -53,7 +58,10 @@ files = $(sort $(wildcard $1/*.c $1/*/*.c $1/*/*/*.c))
 sources := $(foreach layer,$(layers),$(call files,$(call folder,$(layer))))
 object = $(patsubst %.c,$(out)/obj/%.o,$1)
 main := src/app/main.c
-objects := $(call object,$(filter-out $(main),$(sources)))
+lanes_sources := $(filter %.lanes.c,$(sources))
+lanes_objects = $(foreach level,$(levels),$(lanes_sources:%.lanes.c=$(out)/obj/%.$(level).o))
+plain_sources := $(filter-out $(lanes_sources),$(sources))
+objects := $(call object,$(filter-out $(main),$(plain_sources))) $(lanes_objects)
 library := $(out)/libphotonlab.a
 binary := $(if $(filter release,$(BUILD)),build/photonlab,$(out)/photonlab)
 test_sources := $(sort $(wildcard tests/unit/*.c tests/statistical/*.c))
@@ -149,9 +157,16 @@ generated := $(gen)/slots.o $(gen)/version.o
 $(generated): %.o: %.c $(gen)/flags | $(packages_build)
 	@$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
-$(call object,$(sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_build)
+$(call object,$(plain_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_build)
 	@mkdir -p $(@D)
 	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+define lanes_rule
+$(lanes_sources:%.lanes.c=$(out)/obj/%.$1.o): $(out)/obj/%.$1.o: %.lanes.c $(gen)/flags | $(packages_build)
+	@mkdir -p $$(@D)
+	$$(call quiet,CC,$$<)$$(CC) $$(CPPFLAGS) $$(CFLAGS) $(LANES.$1) -DLEVEL=$1 -MMD -MP -c $$< -o $$@
+endef
+$(foreach level,$(levels),$(eval $(call lanes_rule,$(level))))
 
 $(library): $(objects) $(gen)/slots.o $(gen)/objects
 	@rm -f $@
@@ -176,7 +191,7 @@ $(call object,$(test_sources) $(conformance_sources)): $(out)/obj/%.o: %.c $(gen
 	@mkdir -p $(@D)
 	$(call quiet,CC,$<)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
--include $(patsubst %.o,%.d,$(call object,$(sources) $(test_sources) $(conformance_sources) $(fuzz_sources) $(bench_sources)) $(generated))
+-include $(patsubst %.o,%.d,$(lanes_objects) $(call object,$(plain_sources) $(test_sources) $(conformance_sources) $(fuzz_sources) $(bench_sources)) $(generated))
 
 # ---- tests ----
 .PHONY: test test-long conformance test-programs test-asan test-tsan test-bits test-plants validate

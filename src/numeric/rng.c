@@ -2,32 +2,19 @@
 #include "numeric/rng.h"
 #include "numeric/rng_level.h"
 
-#include "base/problem.h"
-
 #include <assert.h>
-#include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
-
-#ifdef __x86_64__
-#include <immintrin.h>
-#endif
-
-enum { ROUNDS = 10 };
-static const uint32_t multiplier0 = 0xD2511F53, multiplier1 = 0xCD9E8D57;
-static const uint32_t weyl0 = 0x9E3779B9, weyl1 = 0xBB67AE85; // golden ratio, sqrt(3) - 1
 
 void rng_philox(struct rng_key key, const uint32_t counter[4], uint32_t out[4]) {
   uint32_t c0 = counter[0], c1 = counter[1], c2 = counter[2], c3 = counter[3];
   uint32_t k0 = key.word[0], k1 = key.word[1];
-  for (int round = 0; round < ROUNDS; round++) {
-    uint64_t p0 = (uint64_t)multiplier0 * c0, p1 = (uint64_t)multiplier1 * c2;
+  for (int round = 0; round < RNG_ROUNDS; round++) {
+    uint64_t p0 = (uint64_t)RNG_MULTIPLIER0 * c0, p1 = (uint64_t)RNG_MULTIPLIER1 * c2;
     c0 = (uint32_t)(p1 >> 32) ^ c1 ^ k0;
     c1 = (uint32_t)p1;
     c2 = (uint32_t)(p0 >> 32) ^ c3 ^ k1;
     c3 = (uint32_t)p0;
-    k0 += weyl0;
-    k1 += weyl1;
+    k0 += RNG_WEYL0;
+    k1 += RNG_WEYL1;
   }
   out[0] = c0;
   out[1] = c1;
@@ -47,69 +34,13 @@ static void fill_one(struct rng_key key, uint64_t iteration, uint64_t path, uint
   *u1 = (double)(((uint64_t)out[3] << 32 | out[2]) >> 11) * 0x1p-53;
 }
 
-static int fill_scalar(struct rng_key key, uint64_t iteration, const uint64_t *path, int n,
-                       uint32_t pair, double *u0, double *u1) {
-  for (int j = 0; j < n; j++) fill_one(key, iteration, path[j], pair, &u0[j], &u1[j]);
-  return n;
-}
-
-#ifdef __x86_64__
-#define LANES(name) name##_sse2
-#define WIDTH 2
-#define MULTIPLY(a, b) (lanes) _mm_mul_epu32((__m128i)(a), (__m128i)(b))
-#define TARGET
-#include "numeric/rng_block.h"
-
-#define LANES(name) name##_avx2
-#define WIDTH 4
-#define MULTIPLY(a, b) (lanes) _mm256_mul_epu32((__m256i)(a), (__m256i)(b))
-#define TARGET __attribute__((target("avx2")))
-#include "numeric/rng_block.h"
-
-#define LANES(name) name##_avx512
-#define WIDTH 8
-#define MULTIPLY(a, b) (lanes) _mm512_mul_epu32((__m512i)(a), (__m512i)(b))
-#define TARGET __attribute__((target("avx512f")))
-#include "numeric/rng_block.h"
-#endif
-
-int rng_levels(struct rng_level level[RNG_MOST_LEVELS]) {
-  int n = 0;
-  level[n++] = (struct rng_level){"scalar", fill_scalar};
-#ifdef __x86_64__
-  level[n++] = (struct rng_level){"sse2", fill_sse2};
-  if (__builtin_cpu_supports("avx2")) level[n++] = (struct rng_level){"avx2", fill_avx2};
-  if (__builtin_cpu_supports("avx512f")) level[n++] = (struct rng_level){"avx512", fill_avx512};
-#endif
-  return n;
-}
-
-static struct rng_level chosen;
-
-static void choose_level(void) {
-  struct rng_level level[RNG_MOST_LEVELS];
-  int n = rng_levels(level);
-  const char *name = getenv("PHOTONLAB_SIMD");
-  chosen = level[n - 1];
-  if (!name || !*name) return;
-  for (int l = 0; l < n; l++)
-    if (strcmp(level[l].name, name) == 0) {
-      chosen = level[l];
-      return;
-    }
-  die("PHOTONLAB_SIMD=%s: the levels of this machine go from scalar to %s", name,
-      level[n - 1].name);
-}
-
 void rng_fill(struct rng_key key, uint64_t iteration, const uint64_t *path, int n, uint32_t pair,
               double *u0, double *u1) {
-  static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, choose_level);
   uint64_t all = iteration;
   for (int j = 0; j < n; j++) all |= path[j];
   assert(all >> 48 == 0);
-  int done = chosen.fill(key, iteration, path, n, pair, u0, u1);
-  fill_scalar(key, iteration, path + done, n - done, pair, u0 + done, u1 + done);
+  int done = LEVEL_TABLE(rng_level)->fill(key, iteration, path, n, pair, u0, u1);
+  for (int j = done; j < n; j++) fill_one(key, iteration, path[j], pair, &u0[j], &u1[j]);
 }
 
 // The finaliser of splitmix64 (Steele, Lea, Flood 2014; constants of Stafford's mix 13): a

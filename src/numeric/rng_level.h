@@ -1,19 +1,21 @@
-// rng_fill for the instruction sets of x86-64. All levels give the same bits; the highest one the
-// machine has is used, or the one named by the environment variable PHOTONLAB_SIMD.
+// The bodies of rng_fill.
 #ifndef NUMERIC_RNG_LEVEL_H
 #define NUMERIC_RNG_LEVEL_H
 
+#include "base/level.h"
 #include "numeric/rng.h"
 
+enum { RNG_ROUNDS = 10 };
+#define RNG_MULTIPLIER0 UINT32_C(0xD2511F53)
+#define RNG_MULTIPLIER1 UINT32_C(0xCD9E8D57)
+#define RNG_WEYL0 UINT32_C(0x9E3779B9) // golden ratio
+#define RNG_WEYL1 UINT32_C(0xBB67AE85) // sqrt(3) - 1
+
 struct rng_level {
-  const char *name;
   // rng_fill for the first paths, up to a multiple of the level's block; returns how many.
   int (*fill)(struct rng_key key, uint64_t iteration, const uint64_t *path, int n, uint32_t pair,
               double *u0, double *u1);
 };
-
-// Those this machine has, lowest first; returns how many.
-enum { RNG_MOST_LEVELS = 4 };
-int rng_levels(struct rng_level level[RNG_MOST_LEVELS]);
+LEVEL_TABLES(rng_level);
 
 #endif

@@ -1,24 +1,25 @@
 #include "tests/bench/bench.h"
 
-#include "numeric/rng_level.h"
+#include "base/level.h"
+#include "numeric/rng.h"
 
 enum { N = 4096, PAIRS = 256 };
 
 static struct random {
   uint64_t path[N];
-  struct rng_level level; // fill NULL: the one that the program chooses
+  enum level level;
   double u[2][N];
-} state[RNG_MOST_LEVELS + 1];
+} state[LEVELS];
 
 static void fill(void *data, int repetition) {
   struct random *random = data;
   struct rng_key key = rng_key(1, 1, RNG_TEST);
   (void)repetition;
+  enum level chosen = level_chosen();
+  level_choose(random->level);
   for (uint32_t pair = 0; pair < PAIRS; pair++)
-    if (random->level.fill)
-      random->level.fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
-    else
-      rng_fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
+    rng_fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
+  level_choose(chosen);
 }
 
 static uint64_t hash(const void *data) {
@@ -49,19 +50,15 @@ static bool equals_single(const struct random *random) {
 }
 
 static void rows(struct bench *bench) {
-  struct rng_level level[RNG_MOST_LEVELS];
-  int n = rng_levels(level);
-  for (int k = 0; k <= n; k++) {
-    struct random *random = &state[k];
+  for (int level = 0; level <= (int)level_best(); level++) {
+    struct random *random = &state[level];
     for (int j = 0; j < N; j++) random->path[j] = (uint64_t)j;
-    if (k < n) random->level = level[k];
-    const char *name = k < n ? level[k].name : "fill";
+    random->level = (enum level)level;
     fill(random, 0);
-    bench_check(equals_single(random), "a batch and single paths differ", name);
-    add(bench, random, name, k ? level[0].name : NULL);
+    bench_check(equals_single(random), "a batch and single paths differ", level_names[level]);
+    add(bench, random, level_names[level], level ? level_names[0] : NULL);
   }
 }
 
-const struct part_type part_random = {
-    "random", "numbers for batches of 4096 paths, by each level and the one that is chosen", 9,
-    rows};
+const struct part_type part_random = {"random", "numbers for batches of 4096 paths, by each level",
+                                      9, rows};
