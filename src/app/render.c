@@ -62,8 +62,7 @@ static bool measure_film(const struct cell *cell, const struct scene *scene, con
     return problem_set(problem, "%s: the scene has no light, every pixel would be black",
                        scene->path);
   struct estimator *estimator = arena_new(cli->arena, struct estimator, 1);
-  struct bvh *bvh =
-      bvh_build(scene, (struct bvh_options){.threads = plan_threads(&cli->options)}, cli->arena);
+  struct bvh *bvh = bvh_build(scene, plan_tree(&cli->options), cli->arena);
   if (!media_check(scene, bvh, *cli->arena, problem)) return false;
   *measure = plan_measurement(cell, scene, bvh, cli->options.skip_off);
   measure->pixel = plan_film(scene, &measure->n_points, cli->arena, problem);

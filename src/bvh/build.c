@@ -7,13 +7,14 @@
 #include "bvh/build.h"
 
 #include "scene/shape/triangle.h"
+#include "scene/skip.h"
 
 #include <assert.h>
 #include <omp.h>
 
 // Measured on one core, rays per second: leaves of 2 to 8 and NODE_COST 0.5 to 1 differ by less
-// than 10 %. No tree (FLAT_SIZE) equals a tree at 12 triangles; at 24 the tree is 1.3 times faster.
-enum { LEAF_SIZE = 4, FLAT_SIZE = 12 };
+// than 10 %.
+enum { LEAF_SIZE = 4 };
 static const double NODE_COST = 0.5;
 
 // Primitives. A part's refs stay in the second-level cache.
@@ -295,7 +296,7 @@ static struct build build_new(const struct scene *scene, struct bvh_options opti
   return (struct build){.scene = scene,
                         .leaf_size = leaf_size ? leaf_size : LEAF_SIZE,
                         .part_size = part_size,
-                        .flat = n <= (leaf_size ? leaf_size : FLAT_SIZE),
+                        .flat = n <= (leaf_size ? leaf_size : options.tree ? 0 : SKIP_FEW_PRIMITIVES),
                         .large = n > part_size && n > leaf_size,
                         .n_threads = threads};
 }

@@ -10,6 +10,7 @@ struct bvh; // bvh/tree.h
 
 struct bvh_options {
   int leaf_size; // most primitives in a leaf; 0: the default, and no tree for a few primitives
+  bool tree;     // over a few primitives, too
   int threads;   // 0: as many as there are; the tree is the same bits for any number
   int part_size; // a thread builds as many primitives alone; 0: the default (tests need less)
 };

@@ -13,7 +13,8 @@ struct view {
   double share;      // as it is set
 };
 
-struct view view_new(const struct scene *, const struct bvh *, struct arena *);
+// moves: as if something did, where nothing does.
+struct view view_new(const struct scene *, const struct bvh *, bool moves, struct arena *);
 
 // Moves everything to its place at a share of the time the shutter is open.
 void view_set(struct view *, double share);

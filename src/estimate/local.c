@@ -178,7 +178,8 @@ static void emit(struct local *local, uint64_t i, const double r[POINT_KINDS]) {
     struct photon_pass pass = {.n_emitted = end < measure->n_emitted ? end : measure->n_emitted,
                                .depth = measure->depth,
                                .first_vertex = measure->nee ? 1 : 0,
-                               .first = t * batches / n * WALK_BATCH};
+                               .first = t * batches / n * WALK_BATCH,
+                               .past_last = measure->skip_off & SKIP_LAST};
     begin(map, worker->walk, RNG_PHOTONS, i);
     struct photon_sinks sinks = sinks_of(local, worker, shared);
     photons_trace(worker->walk, &pass, &sinks, worker->arena);

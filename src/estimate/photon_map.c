@@ -84,7 +84,10 @@ static void build(struct photon_field *field, double r, struct arena *arena) {
 
 void photon_map_emit(struct photon_map *map, uint64_t i, const double r[POINT_KINDS]) {
   const struct measurement *measure = map->measure;
-  struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
+  struct photon_pass pass = {.n_emitted = measure->n_emitted,
+                             .depth = measure->depth,
+                             .first_vertex = measure->nee ? 1 : 0,
+                             .past_last = measure->skip_off & SKIP_LAST};
   map->any_radius = r[ON_SURFACE] == INFINITY;
   struct photon_sinks sinks = photon_map_sinks(map, r);
   sinks.beams = map->beams;

@@ -20,7 +20,9 @@ static double differentials_at(struct radii *radii, const struct eye_point *poin
 static void draw(struct radii *radii) {
   const struct measurement *measure = radii->map->measure;
   struct walk *walk = radii->map->walk;
-  struct photon_pass pass = {measure->n_emitted, measure->depth, measure->nee ? 1 : 0, 0};
+  struct photon_pass pass = {.n_emitted = measure->n_emitted,
+                             .depth = measure->depth,
+                             .first_vertex = measure->nee ? 1 : 0};
   walk->key = rng_key(measure->seed, 0, RNG_RADII);
   walk_begin(walk, measure->seed, 0, 0);
   struct photon_sinks sinks = {.surface = {&radii->photons, NULL}};

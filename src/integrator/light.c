@@ -144,7 +144,7 @@ static void connect(struct light_tracer *state, int j, const struct surface *sur
 // At every hit: connect to the camera, then scatter.
 static void meet(struct light_tracer *state, double *frame) {
   struct walk *walk = state->walk;
-  bool last = walk->vertex + 1 >= state->measure->depth;
+  bool last = walk->vertex + 1 >= state->measure->depth && !(state->measure->skip_off & SKIP_LAST);
   int alive = 0;
   walk_vertex_random(walk);
   walk_random(walk, 3, pair_of_vertex(walk->vertex, VERTEX_EMITTER)); // here: where on the lens

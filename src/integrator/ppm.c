@@ -21,7 +21,7 @@ struct ppm {
 static void *ppm_new(const struct measurement *measure, struct arena *arena) {
   struct ppm *state = arena_new(arena, struct ppm, 1);
   int sets = measure->hit_points > 1 ? measure->hit_points : 1, n = measure->n_points;
-  assert(!measure->features.motion);
+  assert(!scene_features(measure->scene).motion);
   struct pixel *pixel = arena_new(arena, struct pixel, (ptrdiff_t)sets * n);
   for (int s = 0; s < sets; s++)
     memcpy(pixel + (ptrdiff_t)s * n, measure->pixel, (size_t)n * sizeof *pixel);

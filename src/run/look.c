@@ -14,7 +14,8 @@ void look_begin(struct plan *plan) {
   for (int g = 0; g < plan->n_groups; g++) {
     struct group_plan *group = &plan->group[g];
     group->looks = 1;
-    set_runs(group, group->cell->until_se > 0 ? FIRST_RUNS : group->cell->runs);
+    bool until = group->cell->until_se > 0 && !(plan->options.skip_off & SKIP_RUNS);
+    set_runs(group, until ? FIRST_RUNS : group->cell->runs);
   }
 }
 

@@ -19,6 +19,11 @@ int plan_threads(const struct run_options *options) {
   return options->threads ? options->threads : omp_get_max_threads();
 }
 
+struct bvh_options plan_tree(const struct run_options *options) {
+  return (struct bvh_options){.tree = options->skip_off & SKIP_TREE,
+                              .threads = plan_threads(options)};
+}
+
 uint64_t *plan_checkpoints(uint64_t iterations, int *count, struct arena *arena) {
   struct {
     uint64_t *item;
@@ -43,8 +48,7 @@ static const struct loaded_scene *load(struct plan *plan, const char *path, stru
   loaded->path = path;
   struct scene_options options = {.lenient = plan->options.lenient, .notes = stderr};
   if (!scene_read_with(path, options, arena, &loaded->scene, problem)) return NULL;
-  loaded->bvh = bvh_build(&loaded->scene,
-                          (struct bvh_options){.threads = plan_threads(&plan->options)}, arena);
+  loaded->bvh = bvh_build(&loaded->scene, plan_tree(&plan->options), arena);
   if (!media_check(&loaded->scene, loaded->bvh, *arena, problem)) return NULL;
   plan->n_scenes++;
   return loaded;
@@ -66,6 +70,7 @@ struct measurement plan_measurement(const struct cell *cell, const struct scene 
                                 .skip_off = skip_off};
   if (skip_off & SKIP_GRAY) measure.features.n_channels = 3;
   if (skip_off & SKIP_MEDIA) measure.features.media = true;
+  if (skip_off & SKIP_MOTION) measure.features.motion = true;
   return measure;
 }
 
@@ -332,7 +337,8 @@ static void hash_program(XXH64_state_t *state, struct arena scratch) {
 }
 
 // Everything that may change a number: the experiment's text, quality and seeds, the scenes, and
-// the program. What is skipped changes none, but it does change the images' channels.
+// the program. What is skipped changes none, but it does change the images' channels, and how many
+// runs are made.
 static void plan_fingerprint(struct plan *plan, struct arena scratch) {
   XXH64_state_t *state = XXH64_createState();
   XXH64_reset(state, 0);
@@ -345,6 +351,7 @@ static void plan_fingerprint(struct plan *plan, struct arena scratch) {
     XXH64_update(state, &plan->experiment->cell[c].seed, sizeof(uint64_t));
   for (int g = 0; g < plan->n_groups; g++)
     XXH64_update(state, &plan->group[g].width, sizeof plan->group[g].width);
+  if (plan->options.skip_off & SKIP_RUNS) XXH64_update(state, "runs", 4);
   plan->fingerprint = XXH64_digest(state);
   XXH64_freeState(state);
   for (int g = 0; g < plan->n_groups; g++)

@@ -19,6 +19,7 @@ struct run_options {
 };
 
 int plan_threads(const struct run_options *);
+struct bvh_options plan_tree(const struct run_options *);
 
 struct loaded_scene {
   const char *path;

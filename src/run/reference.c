@@ -127,12 +127,14 @@ bool reference_make(const struct group_plan *plan, const struct cell *cell,
                     struct arena scratch, struct problem *problem) {
   if (!is_sampled(cell)) return true;
   char *path = reference_path(plan, cell, directory, &scratch);
-  if (reference_read(path, plan, probe, scratch)) return true;
+  bool again = options->skip_off & SKIP_SAMPLED;
+  if (!again && reference_read(path, plan, probe, scratch)) return true;
   // Begun first: a folder that cannot be written to is found out before the work.
   struct file_out out;
   if (!file_make_directory(directory, problem) || !file_begin(&out, path, problem)) return false;
   struct reference reference = reference_of(plan, cell, &scratch);
-  reference.tree = reference_take_up(path, plan->n_probes, &scratch);
+  reference.tree = again ? moments_tree_new(plan->n_probes, &scratch)
+                         : reference_take_up(path, plan->n_probes, &scratch);
   struct moments *root = arena_new(&scratch, struct moments, plan->n_probes);
   if (!refine(&reference, path, options, root, &scratch)) {
     file_abandon(&out);
@@ -152,9 +154,11 @@ double reference_left_s(const struct group_plan *plan, const struct cell *cell,
   struct probe *probe = arena_new(&scratch, struct probe, plan->n_probes);
   if (!is_sampled(cell)) return 0;
   char *path = reference_path(plan, cell, directory, &scratch);
-  if (reference_read(path, plan, probe, scratch)) return 0;
+  bool again = plan->measure.skip_off & SKIP_SAMPLED;
+  if (!again && reference_read(path, plan, probe, scratch)) return 0;
   struct reference reference = reference_of(plan, cell, &scratch);
-  struct moments_tree kept = reference_take_up(path, plan->n_probes, &scratch);
+  struct moments_tree kept = again ? moments_tree_new(plan->n_probes, &scratch)
+                                   : reference_take_up(path, plan->n_probes, &scratch);
   double *mean = arena_new(&scratch, double, (long)STEPS_PER_UNIT * plan->n_probes);
   double started = progress_clock_s();
   compute_unit(&reference, 0, mean, scratch);

@@ -207,9 +207,22 @@ static const char *applies(enum skip bit, const struct scene *scene,
     return scene->settings.centre ? "yes" : "where pixel centres are asked for";
   case SKIP_MEDIA:
     return features->media ? "no, the scene has media" : "yes";
-  default:
-    return "wherever it can";
+  case SKIP_MOTION:
+    return features->motion ? "no, something moves" : "yes";
+  case SKIP_TREE:
+    return scene->n_primitives > SKIP_FEW_PRIMITIVES ? "no, there are more" : "yes";
+  case SKIP_UNSEEN:
+    return "where a few points are measured";
+  case SKIP_PROBES:
+    return "where no image is asked for";
+  case SKIP_LAST:
+    return "of paths as long as `depth` allows";
+  case SKIP_RUNS:
+    return "where an experiment says `until`";
+  case SKIP_SAMPLED:
+    return "where there is one";
   }
+  return "no";
 }
 
 static void print_feature(FILE *out, const char *name, bool there, const char *without) {

@@ -11,7 +11,16 @@ enum skip {
   SKIP_UNSEEN = 4,     // storing photons in grid cells that no point can see
   SKIP_PROBES = 8,     // computing pixels nobody asked for
   SKIP_MEDIA = 16,     // asking for media, and for photons in them, where there are none
+  SKIP_MOTION = 32,    // bringing a scene to its time in every iteration where nothing moves
+  SKIP_TREE = 64,      // a tree over at most SKIP_FEW_PRIMITIVES
+  SKIP_LAST = 128,     // a direction after the last vertex of a photon path
+  SKIP_RUNS = 256,     // runs after those that `until` needed
+  SKIP_SAMPLED = 512,  // references that are on disk
 };
+
+// Tested one after the other, in one leaf. It equals a tree at 12 triangles; at 24 the tree is 1.3
+// times faster.
+enum { SKIP_FEW_PRIMITIVES = 12 };
 
 struct skip_row {
   const char *name;

@@ -126,7 +126,7 @@ static void store_in_medium(const struct walk *walk, int j, const struct pass *p
 
 // At every vertex: store what can scatter towards an eye, then scatter.
 static void meet(struct walk *walk, const struct pass *pass) {
-  bool last = walk->vertex + 1 >= pass->of->depth;
+  bool last = walk->vertex + 1 >= pass->of->depth && !pass->of->past_last;
   int alive = 0;
   walk_vertex_random(walk);
   photons_reserve(pass->to->surface.photons, walk->n, pass->arena);

@@ -28,6 +28,7 @@ struct photon_pass {
   int first_vertex; // 1: the first surface is left to next-event estimation; else 0
   uint64_t first;   // paths before are left out: a multiple of WALK_BATCH, so that parts of a pass
                     // put together are the pass
+  bool past_last;   // a direction is drawn after the last vertex, too, and nobody follows it
 };
 
 // Which photons are worth storing (NULL: all). A pure function of the position that keeps every

@@ -39,7 +39,7 @@ static void enter_media(struct walk *walk, struct arena *arena) {
 struct walk *walk_new(const struct scene *scene, const struct bvh *bvh, struct features features,
                       struct arena *arena) {
   struct walk *walk = arena_new(arena, struct walk, 1);
-  walk->view = view_new(scene, bvh, arena);
+  walk->view = view_new(scene, bvh, features.motion, arena);
   walk->scene = walk->view.scene;
   walk->bvh = walk->view.bvh;
   walk->features = features;

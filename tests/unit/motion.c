@@ -219,7 +219,7 @@ static void rays_of_a_camera_that_turns_turn_with_it(void **state) {
       "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 WorldBegin " LIGHT SPHERE);
   struct arena arena = arena_reserve(), own = arena;
   struct bvh *bvh = bvh_build(&scene, (struct bvh_options){0}, &own);
-  struct view view = view_new(&scene, bvh, &own);
+  struct view view = view_new(&scene, bvh, false, &own);
   assert_true(view.bvh == bvh); // shared: no shape moves
   view_set(&view, 0.5);
   struct vec d = camera_ray(&view.scene->camera, 2, 2, NULL).d; // inverse of a turn of +z by 30
@@ -232,7 +232,7 @@ static void a_scene_without_motion_is_not_copied(void **state) {
   struct scene scene = scene_of("WorldBegin " LIGHT SPHERE);
   struct arena arena = arena_reserve(), own = arena;
   struct bvh *bvh = bvh_build(&scene, (struct bvh_options){0}, &own);
-  struct view view = view_new(&scene, bvh, &own);
+  struct view view = view_new(&scene, bvh, false, &own);
   assert_true(view.scene == &scene && view.bvh == bvh);
   arena_release(arena);
 }

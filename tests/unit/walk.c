@@ -43,7 +43,8 @@ static double total_flux(const struct photons *photons, int c) {
 static void a_beam_delivers_all_of_its_power(void **state) {
   (void)state;
   struct scene scene = scene_load("scenes/plane-uniform-beam.pbrt");
-  struct photons photons = trace(&scene, (struct photon_pass){10000, 1, 0, 0}, 1, 1);
+  struct photons photons =
+      trace(&scene, (struct photon_pass){.n_emitted = 10000, .depth = 1}, 1, 1);
   assert_int_equal(photons.count, 10000);
   // Every photon carries the light's power; it is divided by n_emitted, never by what is stored.
   assert_true(fabs(total_flux(&photons, 0) / 10000 / scene.light[0].power[0] - 1) < 1e-12);
@@ -56,7 +57,8 @@ static void an_isotropic_light_above_a_plane_delivers_what_the_plane_sees(void *
   // asin(a^2 / (a^2 + h^2)) * 4 / (4 pi). Level 1e-5 (z = 4.4), n = 200000: 1 % off gives z = 6.
   double a = scene.bounds.hi[0], h = 1;
   double p = asin(a * a / (a * a + h * h)) / 3.141592653589793;
-  struct photons photons = trace(&scene, (struct photon_pass){200000, 1, 0, 0}, 1, 1);
+  struct photons photons =
+      trace(&scene, (struct photon_pass){.n_emitted = 200000, .depth = 1}, 1, 1);
   double z = ((double)photons.count - 200000 * p) / sqrt(200000 * p * (1 - p));
   assert_true(fabs(z) < 4.4);
 }
@@ -64,9 +66,10 @@ static void an_isotropic_light_above_a_plane_delivers_what_the_plane_sees(void *
 static void deeper_paths_only_add_photons(void **state) {
   (void)state;
   struct scene scene = scene_load("scenes/cornell-box.pbrt");
-  struct photons shallow = trace(&scene, (struct photon_pass){1000, 1, 0, 0}, 1, 1);
-  struct photons deep = trace(&scene, (struct photon_pass){1000, 8, 0, 0}, 1, 1);
-  struct photons indirect = trace(&scene, (struct photon_pass){1000, 8, 1, 0}, 1, 1);
+  struct photons shallow = trace(&scene, (struct photon_pass){.n_emitted = 1000, .depth = 1}, 1, 1);
+  struct photons deep = trace(&scene, (struct photon_pass){.n_emitted = 1000, .depth = 8}, 1, 1);
+  struct photons indirect =
+      trace(&scene, (struct photon_pass){.n_emitted = 1000, .depth = 8, .first_vertex = 1}, 1, 1);
   assert_true(deep.count > shallow.count);
   assert_int_equal(indirect.count, deep.count - shallow.count);
   // One batch: the first vertices come first, and they are the same photons.
@@ -78,8 +81,8 @@ static void batches_do_not_matter_to_a_path(void **state) {
   (void)state;
   struct scene scene = scene_load("scenes/cornell-box.pbrt");
   // Path 0 .. 999 are the same whether they travel alone or with 5000 others.
-  struct photons few = trace(&scene, (struct photon_pass){1000, 1, 0, 0}, 1, 3);
-  struct photons many = trace(&scene, (struct photon_pass){6000, 1, 0, 0}, 1, 3);
+  struct photons few = trace(&scene, (struct photon_pass){.n_emitted = 1000, .depth = 1}, 1, 3);
+  struct photons many = trace(&scene, (struct photon_pass){.n_emitted = 6000, .depth = 1}, 1, 3);
   assert_memory_equal(few.position, many.position, (size_t)few.count * sizeof *few.position);
   assert_memory_equal(few.flux[0], many.flux[0], (size_t)few.count * sizeof *few.flux[0]);
 }
@@ -87,8 +90,8 @@ static void batches_do_not_matter_to_a_path(void **state) {
 static void gray_scenes_have_equal_channels(void **state) {
   (void)state;
   struct scene scene = scene_load("scenes/cornell-box.pbrt");
-  struct photons one = trace(&scene, (struct photon_pass){2000, 64, 0, 0}, 1, 1);
-  struct photons three = trace(&scene, (struct photon_pass){2000, 64, 0, 0}, 3, 1);
+  struct photons one = trace(&scene, (struct photon_pass){.n_emitted = 2000, .depth = 64}, 1, 1);
+  struct photons three = trace(&scene, (struct photon_pass){.n_emitted = 2000, .depth = 64}, 3, 1);
   assert_int_equal(one.count, three.count);
   for (int c = 0; c < 3; c++)
     assert_memory_equal(one.flux[0], three.flux[c], (size_t)one.count * sizeof *one.flux[0]);
@@ -97,7 +100,8 @@ static void gray_scenes_have_equal_channels(void **state) {
 static void stored_photons_lie_on_surfaces_and_point_back(void **state) {
   (void)state;
   struct scene scene = scene_load("scenes/cornell-box.pbrt");
-  struct photons photons = trace(&scene, (struct photon_pass){2000, 64, 0, 0}, 1, 1);
+  struct photons photons =
+      trace(&scene, (struct photon_pass){.n_emitted = 2000, .depth = 64}, 1, 1);
   struct bvh *bvh = bvh_build(&scene, (struct bvh_options){0}, &arena);
   for (int64_t j = 0; j < photons.count; j++) {
     assert_true(fabs(vec_length(photons.wi[j]) - 1) < 1e-12);
