@@ -298,11 +298,16 @@ $(bench): $(call object,$(bench_sources)) $(gen)/bench.o $(library) $(gen)/versi
 	@mkdir -p $(@D)
 	$(call quiet,LD,$@)$(CC) $(CFLAGS) -Wl,--wrap=bvh_closest $^ $(LDLIBS) $(if $(EMBREE),-lembree3) -o $@
 
-.PHONY: bench bench-compare bench-program
+.PHONY: bench bench-compare bench-skip bench-program
 bench-program: $(bench)
 
 bench: $(bench)
 	@$(bench) --perf "$(PERF)" --csv "$(FIGURES)" $(addprefix --repetitions ,$(REPETITIONS)) $(BENCH)
+
+# What each skip saves.
+bench-skip: BENCH = skip
+bench-skip: FIGURES = build/bench-skip.csv
+bench-skip: bench
 
 bench-compare: bench
 	@tests/bench/compare tests/bench/figures.csv "$(FIGURES)"
@@ -373,7 +378,7 @@ help:
 	@echo 'make conformance       images against pbrt-v4, as precise as the stored ones (CONFORMANCE=folder'
 	@echo '                       SCENES=folder SCENE=name IMAGES=1)'
 	@echo 'make bench             what everything costs (BENCH=PART[/ROW] EMBREE=1 PERF=folder);'
-	@echo '                       bench-compare: against tests/bench/figures.csv'
+	@echo '                       bench-compare: against tests/bench/figures.csv; bench-skip: what is skipped'
 	@echo 'make validate          the built-in checks against closed forms'
 	@echo 'make experiment-NAME   runs experiments/NAME.yaml, fits, plots; into results/NAME'
 	@for name in $(experiments); do echo "                         $$name"; done

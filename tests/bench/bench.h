@@ -24,6 +24,7 @@ struct row {
   // part has compared it.
   uint64_t (*hash)(const void *data);
   const char *base; // a row before it in the part, to which its figure has a ratio; or NULL
+  bool pair;        // one of two, which are told on a line: the second has the first for its base
   int threads;      // 0 or 1: CPU seconds, pinned to one core; more: wall seconds, not pinned
   bool mean;        // over repetitions that differ (iterations of a run), in place of the median
 };

@@ -92,7 +92,12 @@ static double time_of(const struct row *row, const struct repetition *repetition
 
 struct figure figure_of(const struct row *row, const struct repetition *repetition, int n,
                         const struct row *base_row, const struct repetition *base) {
-  struct figure f = {row->work, row->work, row->work, row->work, NAN, {0, 0}, n};
+  struct figure f = {.value = row->work,
+                     .low = row->work,
+                     .high = row->work,
+                     .relative = row->work,
+                     .ratio = NAN,
+                     .repetitions = n};
   if (row->kind == COUNT) return f;
   double value[MOST_REPETITIONS], relative[MOST_REPETITIONS], ratio[MOST_REPETITIONS];
   for (int k = 0; k < n; k++) {
@@ -105,7 +110,11 @@ struct figure figure_of(const struct row *row, const struct repetition *repetiti
   }
   f.value = row->mean ? mean(value, n) : 0;
   f.relative = row->mean ? mean(relative, n) : median(relative, n);
-  f.ratio = base ? median(ratio, n) : NAN;
+  if (base) {
+    f.ratio = median(ratio, n);
+    f.ratio_low = quantile(ratio, n, 0.25);
+    f.ratio_high = quantile(ratio, n, 0.75);
+  }
   double middle = median(value, n);
   if (!row->mean) f.value = middle;
   f.low = quantile(value, n, 0.25);

@@ -29,7 +29,8 @@ struct repetition {
 struct figure {
   double value, low, high; // the median (or mean), and quartiles
   double relative;         // the value where the unit of time is the calibration's
-  double ratio;            // to the base, median of the ratios of turns; NAN: no base
+  // To the base, of the ratios of turns: the median, and quartiles. NAN: no base.
+  double ratio, ratio_low, ratio_high;
   struct seconds time;     // of all repetitions
   int repetitions;
 };

@@ -61,14 +61,20 @@ static int row_named(const struct bench *bench, const char *name) {
 
 static void report(const struct bench *bench, const struct part_type *part,
                    struct repetition (*done)[MOST_REPETITIONS], int n, FILE *csv) {
-  report_table_header(part);
+  static struct figure figure[MOST_ROWS];
+  if (bench->row[0].pair)
+    report_pairs_header(part);
+  else
+    report_table_header(part);
   for (int r = 0; r < bench->n_rows; r++) {
     const struct row *row = &bench->row[r];
     int b = row_named(bench, row->base);
-    struct figure figure =
-        figure_of(row, done[r], n, b < 0 ? NULL : &bench->row[b], b < 0 ? NULL : done[b]);
-    report_table(row, &figure);
-    if (csv) report_csv(csv, part->name, row, &figure);
+    figure[r] = figure_of(row, done[r], n, b < 0 ? NULL : &bench->row[b], b < 0 ? NULL : done[b]);
+    if (!row->pair)
+      report_table(row, &figure[r]);
+    else if (b >= 0)
+      report_pair(row, &figure[r], &figure[b]);
+    if (csv) report_csv(csv, part->name, row, &figure[r]);
   }
 }
 

@@ -87,3 +87,14 @@ void report_table(const struct row *row, const struct figure *f) {
          spread, row->unit, calibrated, ratio);
   fflush(stdout);
 }
+
+void report_pairs_header(const struct part_type *part) {
+  printf("\n%s: %s\n  %-42s %12s %12s  %s\n", part->name, part->about, "", "skipped, s", "not, s",
+         "ratio, quartiles");
+}
+
+void report_pair(const struct row *row, const struct figure *f, const struct figure *base) {
+  printf("  %-42s %12.4g %12.4g  %.2f, %.2f .. %.2f\n", row->base, base->value, f->value, f->ratio,
+         f->ratio_low, f->ratio_high);
+  fflush(stdout);
+}

@@ -16,4 +16,8 @@ void report_csv(FILE *, const char *part, const struct row *, const struct figur
 void report_table_header(const struct part_type *);
 void report_table(const struct row *, const struct figure *);
 
+// For parts of pairs.
+void report_pairs_header(const struct part_type *);
+void report_pair(const struct row *, const struct figure *, const struct figure *base);
+
 #endif

@@ -13,9 +13,11 @@ well_formed() { # every line as many fields as the header, a positive value, low
     { rows++ }
     END { exit bad || rows != '"$2"' || said < 5 }' "$1"
 }
-check 'one row is timed' bench random/fill "$csv"
+check 'one row is timed' bench random/scalar "$csv"
 check 'its CSV describes the machine and has the row' well_formed "$csv" 1
 check_fails 'a row that is not there is said to be missing' bench none/such "$scratch/none.csv"
-better() { tests/bench/compare "$csv" "$csv" | grep -q 'random/fill .* 1.00 *1.00'; }
+better() { tests/bench/compare "$csv" "$csv" | grep -q 'random/scalar .* 1.00 *1.00'; }
 check 'a run compared with itself is as fast' better
+check 'what a skip saves is timed, after it was seen to change nothing' bench skip/last-bounce "$csv"
+check 'with it and without it' well_formed "$csv" 4
 done_testing
