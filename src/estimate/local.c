@@ -5,16 +5,15 @@
 #include <omp.h>
 #include <string.h>
 
-enum { POINTS_AT_ONCE = 64 }; // that a thread gathers before it takes more
+enum { TILES_PER_WORKER = 4 }; // at least, where there are points enough
 
 // What a thread has of its own.
 struct local_worker {
   struct arena *arena;
   struct walk *walk;
   struct photons photons[POINT_KINDS];
-  struct gather gather;
-  struct disc *disc; // [n_estimators]
-  int64_t *found;    // [n_estimators]
+  struct tile tile;
+  int64_t *found; // [n_estimators]
 };
 
 // An equal share of what is left of the arena for one of n.
@@ -37,8 +36,7 @@ static void workers_new(struct local *local, struct arena *arena) {
       *worker->arena = share(arena, local->n_workers - t + 1);
       worker->walk = walk_new(measure->scene, measure->bvh, measure->features, worker->arena);
     }
-    worker->gather.left_out = measure->left_out;
-    worker->disc = arena_new(worker->arena, struct disc, measure->n_estimators);
+    worker->tile = tile_new(measure, worker->walk, worker->arena);
     worker->found = arena_new(worker->arena, int64_t, measure->n_estimators);
   }
 }
@@ -53,7 +51,7 @@ struct local *local_new(const struct measurement *measure, struct arena *arena) 
     field->rd = arena_new(arena, double, size);
     field->n = arena_new(arena, double, size);
   }
-  local->level = arena_new(arena, unsigned char, measure->n_points);
+  local->kind = arena_new(arena, unsigned char, measure->n_points);
   local->fixed = measurement_is_static(measure);
   workers_new(local, arena);
   return local;
@@ -76,24 +74,18 @@ void local_begin(struct local *local, uint64_t run) {
   }
 }
 
-static void begin(const struct photon_map *map, struct walk *walk, enum rng_purpose purpose,
-                  uint64_t i) {
-  walk->key = rng_key(map->measure->seed, map->run, purpose);
-  walk_begin(walk, map->measure->seed, map->run, i);
-}
-
-// Points first..first + n - 1, those of one set.
+// Points first..first + n - 1, those of one set, to be kept.
 static void see_set(struct local *local, uint64_t i, int first, int n) {
   struct photon_map *map = local->map;
   const struct measurement *measure = map->measure;
 #pragma omp parallel num_threads(local->n_workers)
   {
-    struct walk *walk = local->worker[omp_get_thread_num()].walk;
-    begin(map, walk, RNG_EYE, i);
+    struct tile *tile = &local->worker[omp_get_thread_num()].tile;
+    tile_begin(tile, map->run, RNG_EYE, i);
 #pragma omp for schedule(dynamic, 1)
     for (int at = first; at < first + n; at += WALK_BATCH) {
       int left = first + n - at;
-      eye_trace(walk, measure->pixel + at, left < WALK_BATCH ? left : WALK_BATCH,
+      eye_trace(tile->walk, measure->pixel + at, left < WALK_BATCH ? left : WALK_BATCH,
                 measure->footprint, measure->depth, map->point + at);
     }
   }
@@ -102,17 +94,19 @@ static void see_set(struct local *local, uint64_t i, int first, int n) {
 void local_see(struct local *local, uint64_t i) {
   int sets = local->map->sets, n = local->map->measure->n_points / sets;
   if (local->fixed && local->seen) return;
+  local->map->seen = i;
+  if (!local->map->point) return;
   for (int s = 0; s < sets; s++) see_set(local, i + (uint64_t)s, s * n, n);
   local->seen = true;
 }
 
-static struct local_field *field_of(struct local *local, int point) {
-  return &local->field[eye_point_kind(&local->map->point[point])];
+static double radius(const struct local *local, const struct local_field *field, int point,
+                     int estimator) {
+  return root(field->rd[(long)point * local->map->measure->n_estimators + estimator], field->d);
 }
 
 double local_radius(const struct local *local, int point, int estimator) {
-  const struct local_field *field = &local->field[eye_point_kind(&local->map->point[point])];
-  return root(field->rd[(long)point * local->map->measure->n_estimators + estimator], field->d);
+  return radius(local, &local->field[local->kind[point]], point, estimator);
 }
 
 static double largest_r1(const struct measurement *measure, enum point_kind kind) {
@@ -124,34 +118,44 @@ static double largest_r1(const struct measurement *measure, enum point_kind kind
   return r1;
 }
 
-static double largest_radius(const struct local *local, int point) {
+static double largest_radius(const struct local *local, const struct local_field *field,
+                             int point) {
   double r = 0;
   for (int e = 0; e < local->map->measure->n_estimators; e++) {
-    double own = local_radius(local, point, e);
+    double own = radius(local, field, point, e);
     r = r < own ? own : r;
   }
   return r;
 }
 
-// The level of each point that scatters light; largest[kind] of their radii, 0: there is none.
+// Of the grids for points of radii up to r.
+static int level_of(double r1, double r) {
+  int level = 0;
+  for (double edge = 0.5 * r1; level + 1 < LOCAL_LEVELS && edge >= r; edge *= 0.5) level++;
+  return level;
+}
+
+// Whether this pass may see the point there; where they are kept it is known.
+static bool may_scatter(const struct local *local, int point, enum point_kind kind) {
+  const struct eye_point *kept = local->map->point;
+  return !kept || (kept[point].bsdf.type && eye_point_kind(&kept[point]) == kind);
+}
+
+// The levels that this pass needs; largest[kind] of the points' radii, 0: there is none.
 static void set_levels(struct local *local, double largest[POINT_KINDS]) {
   const struct measurement *measure = local->map->measure;
-  double r1[POINT_KINDS];
-  for (int kind = 0; kind < POINT_KINDS; kind++) {
+  largest[IN_VOLUME] = 0;
+  for (int kind = 0; kind < measurement_kinds(measure); kind++) {
+    struct local_field *field = &local->field[kind];
+    double r1 = largest_r1(measure, (enum point_kind)kind);
+    memset(field->used, 0, sizeof field->used);
     largest[kind] = 0;
-    r1[kind] = largest_r1(measure, (enum point_kind)kind);
-    memset(local->field[kind].used, 0, sizeof local->field[kind].used);
-  }
-  for (int j = 0; j < measure->n_points; j++) {
-    const struct eye_point *point = &local->map->point[j];
-    if (!point->bsdf.type) continue;
-    enum point_kind kind = eye_point_kind(point);
-    double r = largest_radius(local, j), edge = r1[kind];
-    int level = 0;
-    for (; level + 1 < LOCAL_LEVELS && 0.5 * edge >= r; level++) edge *= 0.5;
-    local->level[j] = (unsigned char)level;
-    local->field[kind].used[level] = true;
-    largest[kind] = largest[kind] < r ? r : largest[kind];
+    for (int j = 0; j < measure->n_points; j++) {
+      if (!may_scatter(local, j, (enum point_kind)kind)) continue;
+      double r = largest_radius(local, field, j);
+      field->used[level_of(r1, r)] = true;
+      largest[kind] = largest[kind] < r ? r : largest[kind];
+    }
   }
 }
 
@@ -180,7 +184,7 @@ static void emit(struct local *local, uint64_t i, const double r[POINT_KINDS]) {
                                .first_vertex = measure->nee ? 1 : 0,
                                .first = t * batches / n * WALK_BATCH,
                                .past_last = measure->skip_off & SKIP_LAST};
-    begin(map, worker->walk, RNG_PHOTONS, i);
+    tile_begin(&worker->tile, map->run, RNG_PHOTONS, i);
     struct photon_sinks sinks = sinks_of(local, worker, shared);
     photons_trace(worker->walk, &pass, &sinks, worker->arena);
   }
@@ -206,21 +210,24 @@ static void build_grids(struct local *local) {
   }
 }
 
-static void gather(struct local *local, struct local_worker *worker, int point, double *frame) {
+static void gather(struct local *local, struct local_worker *worker, int j, double *frame) {
   struct photon_map *map = local->map;
   const struct measurement *measure = map->measure;
   int n = measure->n_estimators, n_channels = measure->features.n_channels;
-  enum point_kind kind = eye_point_kind(&map->point[point]);
-  const struct photon_field *field = &map->field[kind];
+  struct tile *tile = &worker->tile;
+  const struct eye_point *point = tile_point(tile, j);
+  enum point_kind kind = eye_point_kind(point);
+  struct local_field *field = &local->field[kind];
   memset(worker->found, 0, (size_t)n * sizeof *worker->found);
-  if (!map->point[point].bsdf.type) return;
+  local->kind[j] = (unsigned char)kind;
+  if (!point->bsdf.type) return;
   for (int e = 0; e < n; e++)
-    worker->disc[e] = disc_of(measure->estimator[e].kernel, field->c[e],
-                              local_radius(local, point, e), field->d, measure->n_emitted);
-  gather_point(&worker->gather, &field->photons, &local->field[kind].grid[local->level[point]],
-               &map->point[point], measure->depth, worker->disc, n, worker->found,
-               frame + (long)point * n_channels, (long)measure->n_points * n_channels,
-               worker->arena);
+    tile->disc[e] = disc_of(measure->estimator[e].kernel, map->field[kind].c[e],
+                            radius(local, field, j, e), field->d, measure->n_emitted);
+  int level = level_of(largest_r1(measure, kind), largest_radius(local, field, j));
+  gather_point(&tile->gather, &map->field[kind].photons, &field->grid[level], point, measure->depth,
+               tile->disc, n, worker->found, frame + (long)j * n_channels,
+               (long)measure->n_points * n_channels, worker->arena);
 }
 
 // The next pass' r^d of each estimator at a point: a law without local statistics shrinks both
@@ -237,11 +244,26 @@ static void shrink(struct local *local, const int64_t *found, int point, uint64_
       field->rd[k] = power(r1, field->d) * law->rho(estimator->alpha, i + 1);
     }
     if (!law->count) continue;
-    struct local_field *field = field_of(local, point);
+    struct local_field *field = &local->field[local->kind[point]];
     double ratio;
     field->n[k] = law->count(estimator->alpha, field->n[k], (double)found[e], &ratio);
     field->rd[k] *= ratio;
   }
+}
+
+static void pass_tile(struct local *local, struct local_worker *worker, int first, int n,
+                      uint64_t i, double *frame) {
+  struct photon_map *map = local->map;
+  struct tile *tile = &worker->tile;
+  if (map->point)
+    tile_take(tile, map->point + first, first, n);
+  else
+    tile_see(tile, map->run, map->seen, first, n);
+  for (int j = first; j < first + n; j++) {
+    gather(local, worker, j, frame);
+    shrink(local, worker->found, j, i);
+  }
+  tile_add_seen(tile, map->run, i, map->sets, frame);
 }
 
 void local_pass(struct local *local, uint64_t i, double *frame) {
@@ -251,13 +273,13 @@ void local_pass(struct local *local, uint64_t i, double *frame) {
   set_levels(local, largest);
   if (largest[ON_SURFACE] > 0 || largest[IN_VOLUME] > 0) emit(local, i, largest);
   build_grids(local);
-#pragma omp parallel for schedule(dynamic, POINTS_AT_ONCE) num_threads(local->n_workers)
-  for (int j = 0; j < measure->n_points; j++) {
-    struct local_worker *worker = &local->worker[omp_get_thread_num()];
-    gather(local, worker, j, frame);
-    shrink(local, worker->found, j, i);
+  int most = measure->n_points / (TILES_PER_WORKER * local->n_workers) + 1;
+  if (most > TILE_POINTS) most = TILE_POINTS;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers)
+  for (int first = 0; first < measure->n_points; first += most) {
+    int left = measure->n_points - first, n = left < most ? left : most;
+    pass_tile(local, &local->worker[omp_get_thread_num()], first, n, i, frame);
   }
-  photon_map_add_seen(local->map, i, frame);
 }
 
 int64_t local_bytes(const struct local *local) {

@@ -28,7 +28,7 @@ struct local_field {
 struct local {
   struct photon_map *map;
   struct local_field field[POINT_KINDS]; // the first measurement_kinds of them
-  unsigned char *level;                  // [point], of its field's grids
+  unsigned char *kind;                   // [point] enum point_kind of the one last seen
   bool fixed, seen;                      // every eye pass is the same; there was one
   int n_workers;
   struct local_worker *worker;
@@ -37,10 +37,11 @@ struct local {
 struct local *local_new(const struct measurement *, struct arena *);
 void local_begin(struct local *, uint64_t run);
 
-// The eye pass of iteration i; 0: one before all iterations, for each of the map's sets.
+// The eye pass of iteration i; 0: one before all iterations, for each of the map's sets. Points
+// that are not kept are traced by local_pass, a tile after the other.
 void local_see(struct local *, uint64_t i);
 
-// Photon pass i around the map's points, its estimates into the frame, then the law. A law without
+// Photon pass i around the points, its estimates into the frame, then the law. A law without
 // local statistics follows i alone.
 void local_pass(struct local *, uint64_t i, double *frame);
 

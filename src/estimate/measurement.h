@@ -44,6 +44,7 @@ struct measurement {
   int hit_points;     // ppm: this many points of one eye pass a pixel; 0: one
   bool footprint;     // a new uniform position in the pixel each iteration, else its centre
   bool nee;           // direct light by next-event estimation instead of photons
+  bool keep_points;   // all eye points of an iteration stay for who asks for them afterwards
   int depth;          // pbrt's maxdepth
   uint64_t n_emitted; // photon paths per iteration
   uint64_t seed;

@@ -1,8 +1,5 @@
 #include "estimate/photon_map.h"
 
-#include "walk/connect.h"
-#include "walk/dimension.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -20,23 +17,30 @@ struct photon_map *photon_map_new(const struct measurement *measure, struct aren
   map->measure = measure;
   map->sets = 1;
   map->arena = arena;
-  map->gather.left_out = measure->left_out;
   map->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
-  map->point = arena_new(arena, struct eye_point, measure->n_points);
-  map->disc = arena_new(arena, struct disc, measure->n_estimators);
+  map->tile = tile_new(measure, map->walk, arena);
+  if (!map->tile.room) map->point = arena_new(arena, struct eye_point, measure->n_points);
   for (int kind = 0; kind < measurement_kinds(measure); kind++)
     field_begin(&map->field[kind], measure, point_dimension[kind], arena);
-  if (measure->nee && !(measure->left_out & LIGHT_PATH_DIRECT))
-    map->direct = arena_new(arena, double, (long)measure->n_points * measure->features.n_channels);
   return map;
 }
 
 void photon_map_see(struct photon_map *map, uint64_t i) {
   const struct measurement *measure = map->measure;
-  map->walk->key = rng_key(measure->seed, map->run, RNG_EYE);
-  walk_begin(map->walk, measure->seed, map->run, i);
+  map->seen = i;
+  if (!map->point) return;
+  tile_begin(&map->tile, map->run, RNG_EYE, i);
   eye_trace(map->walk, measure->pixel, measure->n_points, measure->footprint, measure->depth,
             map->point);
+  tile_take(&map->tile, map->point, 0, measure->n_points);
+}
+
+bool photon_map_tile(struct photon_map *map, int first) {
+  int left = map->measure->n_points - first;
+  if (left <= 0) return false;
+  if (!map->point)
+    tile_see(&map->tile, map->run, map->seen, first, left < TILE_POINTS ? left : TILE_POINTS);
+  return true;
 }
 
 static bool keep_none(const void *data, struct vec p) {
@@ -52,7 +56,7 @@ static const struct photon_filter *filter_of(struct photon_map *map, enum point_
   field->filter = (struct photon_filter){keep_none, NULL};
   if (measure->skip_off & SKIP_UNSEEN) return NULL;
   if (r == 0) return &field->filter;
-  if (measure->n_points > PHOTON_MAP_FEW) return NULL;
+  if (measure->n_points > PHOTON_MAP_FEW || !map->point) return NULL;
   int n = 0;
   for (int j = 0; j < measure->n_points; j++)
     if (map->point[j].hit && eye_point_kind(&map->point[j]) == kind)
@@ -102,34 +106,35 @@ void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *
                        double *frame) {
   const struct measurement *measure = map->measure;
   int n_channels = measure->features.n_channels;
-  const struct eye_point *point = &map->point[j];
+  const struct eye_point *point = tile_point(&map->tile, j);
   const struct photon_field *field = &map->field[eye_point_kind(point)];
   if (count) memset(count, 0, (size_t)measure->n_estimators * sizeof *count);
   if (!point->bsdf.type) return;
   for (int e = 0; e < measure->n_estimators; e++)
-    map->disc[e] =
+    map->tile.disc[e] =
         disc_of(measure->estimator[e].kernel, field->c[e], r[e], field->d, measure->n_emitted);
   double *out = frame + (long)j * n_channels;
   long stride = (long)measure->n_points * n_channels;
   if (map->any_radius)
-    gather_point_in_tree(&map->gather, &field->photons, &field->tree, point, measure->depth,
-                         map->disc, measure->n_estimators, count, out, stride, map->arena);
+    gather_point_in_tree(&map->tile.gather, &field->photons, &field->tree, point, measure->depth,
+                         map->tile.disc, measure->n_estimators, count, out, stride, map->arena);
   else
-    gather_point(&map->gather, &field->photons, &field->grid, point, measure->depth, map->disc,
-                 measure->n_estimators, count, out, stride, map->arena);
+    gather_point(&map->tile.gather, &field->photons, &field->grid, point, measure->depth,
+                 map->tile.disc, measure->n_estimators, count, out, stride, map->arena);
 }
 
 void photon_map_nearest(struct photon_map *map, int j, const int *k, double *frame) {
   const struct measurement *measure = map->measure;
   const struct photon_field *field = &map->field[ON_SURFACE];
   int n_channels = measure->features.n_channels;
-  if (!map->point[j].bsdf.type) return;
-  assert(!map->point[j].volume); // refused where there are media
+  const struct eye_point *point = tile_point(&map->tile, j);
+  if (!point->bsdf.type) return;
+  assert(!point->volume); // refused where there are media
   for (int e = 0; e < measure->n_estimators; e++)
-    map->disc[e] =
+    map->tile.disc[e] =
         disc_of(measure->estimator[e].kernel, field->c[e], 1, field->d, measure->n_emitted);
-  gather_nearest(&map->gather, &field->photons, &field->tree, &map->point[j], measure->depth,
-                 map->disc, k, measure->n_estimators, frame + (long)j * n_channels,
+  gather_nearest(&map->tile.gather, &field->photons, &field->tree, point, measure->depth,
+                 map->tile.disc, k, measure->n_estimators, frame + (long)j * n_channels,
                  (long)measure->n_points * n_channels, map->arena);
 }
 
@@ -144,63 +149,6 @@ int64_t photon_map_bytes(const struct photon_map *map) {
   return bytes;
 }
 
-// Light samples of points first..first + n - 1; the eye pass drew nothing from these pairs.
-static void connect_points(struct photon_map *map, int first, int n) {
-  const struct measurement *measure = map->measure;
-  struct walk *walk = map->walk;
-  const struct camera *camera = &walk->scene->camera;
-  uint64_t pixels = (uint64_t)camera->width * (uint64_t)camera->height;
-  walk->n = n;
-  walk->vertex = 0;
-  for (int j = 0; j < n; j++) {
-    uint64_t set = (uint64_t)((first + j) / (measure->n_points / map->sets));
-    walk->path[j] = eye_path(camera, measure->pixel[first + j]) + set * pixels;
-  }
-  walk_random(walk, 2, pair_of_vertex(0, VERTEX_LIGHT));
-  walk_random(walk, 3, pair_of_vertex(0, VERTEX_EMITTER));
-  connect_begin(walk);
-  for (int j = 0; j < n; j++) {
-    const struct eye_point *point = &map->point[first + j];
-    if (!point->bsdf.type || point->vertex >= measure->depth) continue;
-    struct connection connection = {.bsdf = &point->bsdf,
-                                    .p = point->p,
-                                    .primitive = point->primitive,
-                                    .medium = point->medium,
-                                    .path = walk->path[j],
-                                    .wo = point->wo,
-                                    .owner = first + j};
-    memcpy(connection.weight, point->weight, sizeof connection.weight);
-    double u[2] = {walk->u[3][0][j], walk->u[3][1][j]};
-    connect_add(walk, &connection, walk->u[2][0][j], u, false);
-  }
-  connect_finish(walk, map->direct);
-}
-
-// Direct light by next-event estimation, the same for all estimators.
-static void add_direct(struct photon_map *map, uint64_t i, double *frame) {
-  const struct measurement *measure = map->measure;
-  long stride = (long)measure->n_points * measure->features.n_channels;
-  memset(map->direct, 0, (size_t)stride * sizeof *map->direct);
-  map->walk->key = rng_key(measure->seed, map->run, RNG_EYE);
-  walk_begin(map->walk, measure->seed, map->run, i);
-  for (int first = 0; first < measure->n_points; first += WALK_BATCH) {
-    int left = measure->n_points - first;
-    connect_points(map, first, left < WALK_BATCH ? left : WALK_BATCH);
-  }
-  for (int e = 0; e < measure->n_estimators; e++)
-    for (long k = 0; k < stride; k++) frame[e * stride + k] += map->direct[k];
-}
-
-static void add_emitted(const struct photon_map *map, double *frame) {
-  const struct measurement *measure = map->measure;
-  int n_channels = measure->features.n_channels;
-  for (int e = 0; e < measure->n_estimators; e++)
-    for (int j = 0; j < measure->n_points; j++, frame += n_channels)
-      for (int c = 0; c < n_channels; c++) frame[c] += map->point[j].emitted[c];
-}
-
 void photon_map_add_seen(struct photon_map *map, uint64_t i, double *frame) {
-  const struct measurement *measure = map->measure;
-  if (!(measure->left_out & LIGHT_PATH_EMITTED)) add_emitted(map, frame);
-  if (map->direct && measure->depth > 0) add_direct(map, i, frame);
+  tile_add_seen(&map->tile, map->run, i, map->sets, frame);
 }

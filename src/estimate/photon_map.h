@@ -1,11 +1,11 @@
 // One iteration of a photon integrator: eye points, a photon pass, and the density estimates at the
 // points. What the radii are and what is remembered between iterations is the integrator's.
-//   photon_map_see -> photon_map_emit -> photon_map_gather at each point -> photon_map_add_seen
+//   photon_map_see -> photon_map_emit -> for each photon_map_tile: photon_map_gather at its points,
+//   photon_map_add_seen
 #ifndef ESTIMATE_PHOTON_MAP_H
 #define ESTIMATE_PHOTON_MAP_H
 
-#include "density/gather.h"
-#include "estimate/measurement.h"
+#include "estimate/tile.h"
 
 enum { PHOTON_MAP_FEW = 16 }; // points; then photons elsewhere are not worth sorting
 
@@ -25,15 +25,14 @@ struct photon_map {
   struct arena *arena;
   struct walk *walk;
   uint64_t run;
-  struct eye_point *point; // [measure->n_points]
+  uint64_t seen;           // the iteration whose eye pass this is
+  struct eye_point *point; // [measure->n_points] where they are kept, else NULL
+  struct tile tile;        // those at hand
   int sets;                // ppm: the points are this many sets, each of all pixels; else 1
   struct photon_field field[POINT_KINDS]; // the first measurement_kinds of them
   struct beams *beams;                    // where a pass leaves them in media; NULL: nobody asks
   bool any_radius; // the photons are in the fields' trees, else in their grids
-  struct gather gather;
-  struct disc *disc; // [n_estimators] scratch
   struct vec seen_point[PHOTON_MAP_FEW];
-  double *direct; // [n_points * n_channels], next-event estimation only
 };
 
 static inline enum point_kind eye_point_kind(const struct eye_point *point) {
@@ -42,8 +41,13 @@ static inline enum point_kind eye_point_kind(const struct eye_point *point) {
 
 struct photon_map *photon_map_new(const struct measurement *, struct arena *);
 
-// The eye pass of iteration i; i = 0: one before all iterations.
+// The eye pass of iteration i; i = 0: one before all iterations. Kept points are one tile, at hand
+// from here on; others are traced when their tile is asked for.
 void photon_map_see(struct photon_map *, uint64_t i);
+
+// The points from `first` on that are at hand together; false: there are none left.
+//   for (int first = 0; photon_map_tile(map, first); first += map->tile.n)
+bool photon_map_tile(struct photon_map *, int first);
 
 // The photons that gathers of radius up to r[kind] around the points may find, into the map's own;
 // r[kind] = 0: nobody asks for them. Holds until the next call.
@@ -53,7 +57,7 @@ struct photon_sinks photon_map_sinks(struct photon_map *, const double r[POINT_K
 // for photon_map_nearest.
 void photon_map_emit(struct photon_map *, uint64_t i, const double r[POINT_KINDS]);
 
-// Adds the estimates at a point with radius r[e] of estimator e to
+// Adds the estimates at a point of the tile with radius r[e] of estimator e to
 // frame[(e * n_points + point) * n_channels + c], and counts the photons in each disc (count: NULL
 // or [n_estimators]).
 void photon_map_gather(struct photon_map *, int point, const double *r, int64_t *count,
@@ -65,8 +69,7 @@ void photon_map_nearest(struct photon_map *, int point, const int *k, double *fr
 // Of the stored photons and what finds them.
 int64_t photon_map_bytes(const struct photon_map *);
 
-// Adds what needs no photons: emission seen by the points, and their direct light where it is left
-// to next-event estimation (random in iteration i).
+// Adds what needs no photons, of the tile's points: tile_add_seen.
 void photon_map_add_seen(struct photon_map *, uint64_t i, double *frame);
 
 // Length of a frame.

@@ -65,25 +65,26 @@ struct radii radii_new(struct photon_map *map, struct arena *arena) {
     differentials |= row_of(&measure->estimator[e])->differentials;
   }
   if (differentials) walk_follow_differentials(map->walk, arena);
-  radii.value = arena_new(arena, double, (long)measure->n_points * measure->n_estimators);
+  long points = map->point ? measure->n_points : TILE_POINTS;
+  radii.value = arena_new(arena, double, points * measure->n_estimators);
   radii.r = arena_new(arena, double, measure->n_estimators);
   return radii;
 }
 
 void radii_set(struct radii *radii) {
   const struct measurement *measure = radii->map->measure;
-  for (int j = 0; j < measure->n_points; j++)
+  for (int j = 0; j < radii->map->tile.n; j++)
     for (int e = 0; e < measure->n_estimators; e++) {
       const struct estimator *estimator = &measure->estimator[e];
-      const struct eye_point *point = &radii->map->point[j];
+      const struct eye_point *point = &radii->map->tile.point[j];
       double *value = &radii->value[(long)j * measure->n_estimators + e];
       *value = point->bsdf.type ? row_of(estimator)->at(radii, point, estimator->k) : 0;
     }
 }
 
 const double *radii_scale(struct radii *radii, int point, const double *r) {
-  int n = radii->map->measure->n_estimators;
-  for (int e = 0; e < n; e++) radii->r[e] = r[e] * radii->value[(long)point * n + e];
+  int n = radii->map->measure->n_estimators, j = point - radii->map->tile.first;
+  for (int e = 0; e < n; e++) radii->r[e] = r[e] * radii->value[(long)j * n + e];
   return radii->r;
 }
 

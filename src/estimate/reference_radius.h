@@ -26,7 +26,7 @@ struct radii {
   struct photon_map *map;
   struct arena *arena;
   bool global;   // of all estimators
-  double *value; // [n_points * n_estimators]
+  double *value; // [points * n_estimators] of the map's tile
   double *r;     // scratch, [n_estimators]
   bool drawn;    // the photons of the first pass
   struct photons photons;
@@ -37,10 +37,10 @@ struct radii {
 // Before the map's first eye pass.
 struct radii radii_new(struct photon_map *, struct arena *);
 
-// After an eye pass: of the points it found.
+// Of the points of the map's tile.
 void radii_set(struct radii *);
 
-// r[e] times the reference radius of estimator e at a point; valid until the next call.
+// r[e] times the reference radius of estimator e at a point of the tile; valid until the next call.
 const double *radii_scale(struct radii *, int point, const double *r);
 
 // Of the photons of the first pass and what finds them.

@@ -12,6 +12,7 @@
 enum { FEW = 64 }; // segments; then all beams are looked at rather than sorted into a tree
 
 struct beam_map {
+  struct measurement own; // whose points are kept: segments go by them
   const struct measurement *measure;
   struct arena *arena;
   struct photon_map *map; // its surfaces, and its walk
@@ -26,9 +27,11 @@ struct beam_map {
 
 static void *beams_new(const struct measurement *measure, struct arena *arena) {
   struct beam_map *state = arena_new(arena, struct beam_map, 1);
-  state->measure = measure;
+  state->own = *measure;
+  state->own.keep_points = true;
+  state->measure = &state->own;
   state->arena = arena;
-  state->map = photon_map_new(measure, arena);
+  state->map = photon_map_new(&state->own, arena);
   state->map->beams = &state->beams;
   state->gather.left_out = measure->left_out;
   state->c = arena_new(arena, double, measure->n_estimators);
@@ -52,6 +55,7 @@ static void see(struct beam_map *state, uint64_t i) {
   walk_begin(map->walk, measure->seed, map->run, i);
   eye_segments_trace(&state->segments, map->walk, measure->pixel, measure->n_points,
                      measure->footprint, measure->depth, map->point, state->arena);
+  tile_take(&map->tile, map->point, 0, measure->n_points);
   state->points_are_traced = true;
 }
 

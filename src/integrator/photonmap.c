@@ -61,11 +61,13 @@ static void photonmap_step(void *data, uint64_t i, double *frame) {
   if (!measurement_is_static(measure) || !state->points_are_traced) photon_map_see(map, i);
   state->points_are_traced = true;
   emit(state, i);
-  for (int j = 0; j < measure->n_points; j++) {
-    photon_map_gather(map, j, state->r[eye_point_kind(&map->point[j])], NULL, frame);
-    if (state->any_k) photon_map_nearest(map, j, state->k, frame);
+  for (int first = 0; photon_map_tile(map, first); first += map->tile.n) {
+    for (int j = first; j < first + map->tile.n; j++) {
+      photon_map_gather(map, j, state->r[eye_point_kind(tile_point(&map->tile, j))], NULL, frame);
+      if (state->any_k) photon_map_nearest(map, j, state->k, frame);
+    }
+    photon_map_add_seen(map, i, frame);
   }
-  photon_map_add_seen(map, i, frame);
 }
 
 static int64_t photonmap_bytes(const void *data) {

@@ -29,6 +29,7 @@ static void *ppm_new(const struct measurement *measure, struct arena *arena) {
   state->points = *measure;
   state->points.pixel = pixel;
   state->points.n_points = sets * n;
+  state->points.keep_points = true;
   state->frame = arena_new(arena, double, photon_map_frame(&state->points));
   state->local = local_new(&state->points, arena);
   state->local->map->sets = sets;

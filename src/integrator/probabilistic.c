@@ -55,19 +55,20 @@ static void emit(struct probabilistic *state, uint64_t i) {
 
 static void probabilistic_step(void *data, uint64_t i, double *frame) {
   struct probabilistic *state = data;
-  const struct measurement *measure = state->measure;
-  memset(frame, 0, (size_t)photon_map_frame(measure) * sizeof *frame);
-  if (!state->points_are_fixed || !state->points_are_traced) {
-    photon_map_see(state->map, i);
-    radii_set(&state->radii);
+  struct photon_map *map = state->map;
+  memset(frame, 0, (size_t)photon_map_frame(state->measure) * sizeof *frame);
+  bool sees = !state->points_are_fixed || !state->points_are_traced;
+  if (sees) photon_map_see(map, i);
+  emit(state, i);
+  for (int first = 0; photon_map_tile(map, first); first += map->tile.n) {
+    if (sees) radii_set(&state->radii);
+    for (int j = first; j < first + map->tile.n; j++) {
+      const double *r = state->r[eye_point_kind(tile_point(&map->tile, j))];
+      photon_map_gather(map, j, radii_scale(&state->radii, j, r), NULL, frame);
+    }
+    photon_map_add_seen(map, i, frame);
   }
   state->points_are_traced = true;
-  emit(state, i);
-  for (int j = 0; j < measure->n_points; j++) {
-    const double *r = state->r[eye_point_kind(&state->map->point[j])];
-    photon_map_gather(state->map, j, radii_scale(&state->radii, j, r), NULL, frame);
-  }
-  photon_map_add_seen(state->map, i, frame);
 }
 
 static int64_t probabilistic_bytes(const void *data) {

@@ -16,16 +16,28 @@ static inline struct moments moments_of(double x) { return (struct moments){1, x
 // Chan, Golub, LeVeque 1979; third and fourth by Pebay 2008.
 struct moments moments_merge(struct moments a, struct moments b);
 
-static inline double moments_variance(struct moments m) { return m.m2 / (m.n - 1); } // unbiased
+static inline double moments_variance(struct moments m) { return m.m2 / (m.n - 1); }  // unbiased
 static inline double moments_se2(struct moments m) { return m.m2 / (m.n - 1) / m.n; } // of the mean
 
-// The tree, over vectors of `width` numbers: push vectors in the order of run numbers (or moments of
-// blocks of equal power-of-two size in the order of block numbers), then read the root.
+// Mean and m2 alone, of numbers that come one after the other: a pixel's over iterations.
+struct running {
+  double mean, m2;
+};
+
+// The n-th number (Welford 1962).
+static inline void running_add(struct running *running, double x, double n) {
+  double delta = x - running->mean;
+  running->mean += delta / n;
+  running->m2 += delta * (x - running->mean);
+}
+
+// The tree, over vectors of `width` numbers: push vectors in the order of run numbers (or moments
+// of blocks of equal power-of-two size in the order of block numbers), then read the root.
 struct moments_tree {
   long width;
-  int levels;              // that can be stored
-  uint64_t count;          // leaves pushed
-  struct moments **level;  // [levels][width]; level l is in use iff bit l of count is set
+  int levels;             // that can be stored
+  uint64_t count;         // leaves pushed
+  struct moments **level; // [levels][width]; level l is in use iff bit l of count is set
 };
 enum { MOMENTS_LEVELS = 40 };
 struct moments_tree moments_tree_new(long width, struct arena *);

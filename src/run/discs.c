@@ -65,7 +65,8 @@ bool discs_write(const struct group_plan *group, const struct experiment *experi
   const struct cell *cell = group->cell;
   const struct integrator_type *integrator = cell->integrator;
   const char *folder = arena_format(&scratch, "%s/discs", directory);
-  const struct measurement *measure = &group->measure;
+  struct measurement own = group->measure, *measure = &own;
+  own.keep_points = true;
   if (cell->n_discs == 0) return true;
   if (!file_make_directory(folder, problem)) return false;
   double *frame =

@@ -103,8 +103,7 @@ static bool write_images(const struct outputs *outputs, const struct group_plan 
       const struct cell *cell = &outputs->plan->experiment->cell[group->group->cell[e]];
       bool single = m >= cell->n_images;
       uint64_t i = single ? cell->single[m - cell->n_images] : cell->image[m];
-      struct image image =
-          picture_of(&group->measure, moments + plan_image(group, e, m), moments_variance, &own);
+      struct image image = picture_of(&group->measure, moments + plan_image(group, e, m), &own);
       char *n = arena_format(&own, "%" PRIu64, i);
       image.manifest = cell_json_line(cell, single ? "iteration" : "average_of", n, &own);
       char *path = arena_format(&own, "%s/%s-cell%03d-%s%s.exr", folder, cell->scene, cell->number,

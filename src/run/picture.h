@@ -6,9 +6,11 @@
 #include "integrator/integrator.h"
 #include "moments/moments.h"
 
-// R, G, B: means; variance.R, .G, .B: what `variance` says of the moments, NAN of fewer than two
-// values. moments[point * n_channels + channel]; `measure` covers the film.
+// Planes R, G, B, variance.R, .G, .B, to be filled; `measure` covers the film.
+struct image picture_new(const struct measurement *measure, struct arena *);
+
+// Means and variances, NAN of fewer than two values. moments[point * n_channels + channel].
 struct image picture_of(const struct measurement *measure, const struct moments *moments,
-                        double (*variance)(struct moments), struct arena *);
+                        struct arena *);
 
 #endif

@@ -17,12 +17,25 @@ static void compute_round(const struct integrator_type *integrator, void *const 
       integrator->step(state[omp_get_thread_num()], first + (uint64_t)k, frames + k * size);
 }
 
-static void push_round(struct moments_tree *tree, const double *frames, int count, long size,
-                       struct moments *leaf, struct arena *arena) {
-  for (int k = 0; k < count; k++) {
-    for (long j = 0; j < size; j++) leaf[j] = moments_of(frames[k * size + j]);
-    moments_tree_push(tree, leaf, arena);
-  }
+// Frames of iterations first, first + 1, ... in their order.
+static void add_round(struct running *running, const double *frames, uint64_t first, int count,
+                      long size) {
+  for (int k = 0; k < count; k++)
+    for (long j = 0; j < size; j++)
+      running_add(&running[j], frames[k * size + j], (double)(first + (uint64_t)k));
+}
+
+static struct image picture(const struct measurement *measure, const struct running *running,
+                            double n, struct arena *arena) {
+  int n_channels = measure->features.n_channels;
+  struct image image = picture_new(measure, arena);
+  for (long j = 0; j < measure->n_points; j++)
+    for (int c = 0; c < 3; c++) {
+      const struct running *at = &running[j * n_channels + (n_channels == 3 ? c : 0)];
+      image.plane[c][j] = (float)at->mean;
+      image.plane[3 + c][j] = n > 1 ? (float)(at->m2 / (n - 1) / n) : NAN;
+    }
+  return image;
 }
 
 // The film's exposure, of the mean and of its variance.
@@ -40,12 +53,11 @@ bool render_image(const struct integrator_type *integrator, const struct measure
   struct measurement own_measure = *measure;
   int threads = integrator->independent ? plan_threads(&options) : 1;
   own_measure.threads = integrator->independent ? 1 : plan_threads(&options);
-  int round = threads * ITERATIONS_PER_THREAD;
+  int round = threads > 1 ? threads * ITERATIONS_PER_THREAD : 1;
   if ((uint64_t)round > iterations) round = (int)iterations;
   long size = (long)measure->n_points * measure->features.n_channels;
-  struct moments *moments = arena_new(arena, struct moments, size);
+  struct running *running = arena_new(arena, struct running, size);
   double *frames = arena_new(arena, double, round *size);
-  struct moments_tree tree = moments_tree_new(size, arena);
   void **state = arena_new(arena, void *, threads);
   struct arena *own = arena_new(arena, struct arena, threads),
                *kept = arena_new(arena, struct arena, threads);
@@ -60,14 +72,13 @@ bool render_image(const struct integrator_type *integrator, const struct measure
     uint64_t left = iterations - first + 1;
     int count = left < (uint64_t)round ? (int)left : round;
     compute_round(integrator, state, first, count, size, frames, threads);
-    push_round(&tree, frames, count, size, moments, arena);
+    add_round(running, frames, first, count, size);
     progress_advance(&progress, count);
   }
   progress_end(&progress);
   for (int t = 0; t < threads; t++) arena_release(kept[t]);
   if (interrupt_signal()) return false;
-  moments_tree_root(&tree, moments);
-  *image = picture_of(measure, moments, moments_se2, arena);
+  *image = picture(measure, running, (double)iterations, arena);
   expose(image, measure->scene->settings.exposure, measure->n_points);
   return true;
 }

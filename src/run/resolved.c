@@ -31,6 +31,7 @@ bool resolved_at_probes(const struct group_plan *plan, struct arena scratch,
   struct measurement measure = plan->measure;
   measure.pixel = plan->probe_pixel;
   measure.n_points = plan->n_probes;
+  measure.keep_points = true;
   if (!plan->cell->integrator->photons || all_count_in_scene_units(&measure)) return true;
   struct photon_map *map = photon_map_new(&measure, &scratch);
   struct radii radii = radii_new(map, &scratch);
