@@ -48,6 +48,10 @@ LANES.avx2 = -mavx2
 LANES.avx512 = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 levels := scalar $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),avx2 avx512)
 LDLIBS := -lOpenEXRCore -lgsl -lgslcblas -lyaml -ljansson -lxxhash -lpng -ljpeg -lz -lm
+# GNU's OpenMP is told how to wait (src/base/threads.c), for which it has to be a static library.
+clang := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),clang)
+gomp := $(if $(clang),,$(wildcard $(shell $(CC) -print-file-name=libgomp.a 2>/dev/null)))
+LDLIBS += $(gomp) -Wl,--as-needed
 
 # ---- files ----
 out := build/$(BUILD)
@@ -84,7 +88,6 @@ endef
 all: $(binary)
 
 # ---- set-up: what is missing is installed once ----
-clang := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),clang)
 cc_name := $(subst /,_,$(subst $() ,_,$(CC)))
 packages_build := build/packages/$(cc_name).build
 packages_test := build/packages/$(cc_name).test

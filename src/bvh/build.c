@@ -6,6 +6,7 @@
 // the number of threads.
 #include "bvh/build.h"
 
+#include "base/threads.h"
 #include "scene/shape/triangle.h"
 #include "scene/skip.h"
 
@@ -292,11 +293,13 @@ static struct part *all_parts(const struct build *b, struct range all) {
 static struct build build_new(const struct scene *scene, struct bvh_options options) {
   uint32_t n = scene->n_primitives, leaf_size = (uint32_t)options.leaf_size,
            part_size = options.part_size ? (uint32_t)options.part_size : PART_SIZE;
-  int threads = options.threads ? options.threads : omp_get_max_threads();
+  int threads = options.threads ? options.threads : threads_available();
   return (struct build){.scene = scene,
                         .leaf_size = leaf_size ? leaf_size : LEAF_SIZE,
                         .part_size = part_size,
-                        .flat = n <= (leaf_size ? leaf_size : options.tree ? 0 : SKIP_FEW_PRIMITIVES),
+                        .flat = n <= (leaf_size      ? leaf_size
+                                      : options.tree ? 0
+                                                     : SKIP_FEW_PRIMITIVES),
                         .large = n > part_size && n > leaf_size,
                         .n_threads = threads};
 }

@@ -5,7 +5,10 @@
 #include <omp.h>
 #include <string.h>
 
-enum { TILES_PER_WORKER = 4 }; // at least, where there are points enough
+enum {
+  TILES_PER_WORKER = 4, // at least, where there are points enough
+  FEW_POINTS = 64,      // that one thread gathers sooner than others are awake
+};
 
 // What a thread has of its own.
 struct local_worker {
@@ -78,7 +81,7 @@ void local_begin(struct local *local, uint64_t run) {
 static void see_set(struct local *local, uint64_t i, int first, int n) {
   struct photon_map *map = local->map;
   const struct measurement *measure = map->measure;
-#pragma omp parallel num_threads(local->n_workers)
+#pragma omp parallel num_threads(local->n_workers) if (n > WALK_BATCH)
   {
     struct tile *tile = &local->worker[omp_get_thread_num()].tile;
     tile_begin(tile, map->run, RNG_EYE, i);
@@ -175,7 +178,7 @@ static void emit(struct local *local, uint64_t i, const double r[POINT_KINDS]) {
   struct photon_sinks shared = photon_map_sinks(map, r);
   uint64_t batches = (measure->n_emitted + WALK_BATCH - 1) / WALK_BATCH;
   uint64_t n = (uint64_t)local->n_workers;
-#pragma omp parallel for schedule(static, 1) num_threads(local->n_workers)
+#pragma omp parallel for schedule(static, 1) num_threads(local->n_workers) if (batches > 1)
   for (uint64_t t = 0; t < n; t++) {
     struct local_worker *worker = &local->worker[t];
     uint64_t end = (t + 1) * batches / n * WALK_BATCH;
@@ -199,7 +202,8 @@ static void emit(struct local *local, uint64_t i, const double r[POINT_KINDS]) {
 
 static void build_grids(struct local *local) {
   const struct measurement *measure = local->map->measure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers)
+  bool many = measure->n_emitted > WALK_BATCH;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers) if (many)
   for (int k = 0; k < measurement_kinds(measure) * LOCAL_LEVELS; k++) {
     int kind = k / LOCAL_LEVELS, level = k % LOCAL_LEVELS;
     struct local_field *field = &local->field[kind];
@@ -275,7 +279,8 @@ void local_pass(struct local *local, uint64_t i, double *frame) {
   build_grids(local);
   int most = measure->n_points / (TILES_PER_WORKER * local->n_workers) + 1;
   if (most > TILE_POINTS) most = TILE_POINTS;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers)
+  bool many = measure->n_points > FEW_POINTS;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(local->n_workers) if (many)
   for (int first = 0; first < measure->n_points; first += most) {
     int left = measure->n_points - first, n = left < most ? left : most;
     pass_tile(local, &local->worker[omp_get_thread_num()], first, n, i, frame);

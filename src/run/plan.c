@@ -1,6 +1,7 @@
 #include "run/plan.h"
 
 #include "base/file.h"
+#include "base/threads.h"
 #include "base/version.h"
 #include "density/grid.h"
 #include "numeric/elementary.h"
@@ -11,12 +12,11 @@
 
 #include <inttypes.h>
 #include <limits.h>
-#include <omp.h>
 #include <string.h>
 #include <xxhash.h>
 
 int plan_threads(const struct run_options *options) {
-  return options->threads ? options->threads : omp_get_max_threads();
+  return options->threads ? options->threads : threads_available();
 }
 
 struct bvh_options plan_tree(const struct run_options *options) {

@@ -253,17 +253,7 @@ static void photons_are_independent(void **state) {
   }
 }
 
-// Threads that wait for the next of thousands of small pictures must not spin: that would take ten
-// times the time, of others too. OpenMP reads it before main.
-static void wait_without_spinning(char **arguments) {
-  if (getenv("OMP_WAIT_POLICY")) return;
-  setenv("OMP_WAIT_POLICY", "passive", 1);
-  execv("/proc/self/exe", arguments);
-}
-
-int main(int count, char **arguments) {
-  (void)count;
-  wait_without_spinning(arguments);
+int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(runs_and_iterations_are_independent),
       cmocka_unit_test(pixels_are_independent),
