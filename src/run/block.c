@@ -1,152 +1,14 @@
-#define _GNU_SOURCE // opendir, rmdir, clock_gettime
+#define _GNU_SOURCE // opendir, rmdir
 #include "run/block.h"
 
 #include "base/file.h"
-#include "estimate/local.h"
 
 #include <dirent.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 #include <xxhash.h>
-
-// Running sums of one run: of the probes' luminance, and of the film where images are kept.
-struct averages {
-  double *probe, *film;
-  long film_size;
-};
-
-// Image m of all cells: `film` divided by n.
-static void keep_image(const struct group_plan *plan, int m, const double *film, double n,
-                       double *value) {
-  long size = (long)plan->measure.n_points * plan->measure.features.n_channels;
-  for (int c = 0; c < plan->group->n_cells; c++)
-    for (long k = 0; k < size; k++) value[plan_image(plan, c, m) + k] = film[c * size + k] / n;
-}
-
-static void keep_images(const struct group_plan *plan, uint64_t i, const double *frame,
-                        const double *film, double *value) {
-  const struct cell *cell = plan->cell;
-  for (int m = 0; m < cell->n_images; m++)
-    if (cell->image[m] == i) keep_image(plan, m, film, (double)i, value);
-  for (int m = 0; m < cell->n_singles; m++)
-    if (cell->single[m] == i) keep_image(plan, cell->n_images + m, frame, 1, value);
-}
-
-// The probes' squared radii of iteration i, before it; in media those of their points on surfaces.
-static void keep_radii(const struct group_plan *plan, uint64_t i, const void *state,
-                       double *value) {
-  const double *r2 = plan->cell->integrator->local(state)->field[ON_SURFACE].rd;
-  for (int c = 0; c < plan->group->n_cells; c++)
-    for (int p = 0; p < plan->n_probes; p++)
-      value[plan_series(plan, c, p) + plan->radius_at + (long)(i - 1)] =
-          r2[(long)plan->probe_point[p] * plan->measure.n_estimators + c];
-}
-
-static double probe_value(const struct group_plan *plan, const double *frame, int estimator,
-                          int probe) {
-  int n_channels = plan->measure.features.n_channels;
-  long point = (long)estimator * plan->measure.n_points + plan->probe_point[probe];
-  return luminance(frame + point * n_channels, n_channels);
-}
-
-// Iteration i's frame into the series of one cell at one probe. A bias that is proportional to r^2
-// is 4/3 of what half the radius takes away (Richardson; theory 4.1).
-static void keep_probe(const struct group_plan *plan, uint64_t i, int checkpoint,
-                       const double *frame, int cell, int probe, double *sum, double *value) {
-  double *series = value + plan_series(plan, cell, probe);
-  double x = probe_value(plan, frame, cell, probe);
-  *sum += series[i - 1] = x;
-  if (checkpoint >= 0) series[plan->average_at + checkpoint] = *sum / (double)i;
-  if (plan->companion[cell])
-    series[plan->richardson_at + (long)(i - 1)] =
-        4.0 / 3 * (x - probe_value(plan, frame, plan->companion[cell], probe));
-}
-
-// Iteration i's frame into the run's vector.
-static void keep(const struct group_plan *plan, uint64_t i, int checkpoint, const double *frame,
-                 struct averages *sum, double *value) {
-  for (int c = 0; c < plan->group->n_cells; c++)
-    for (int p = 0; p < plan->n_probes; p++)
-      keep_probe(plan, i, checkpoint, frame, c, p, &sum->probe[c * plan->n_probes + p], value);
-  if (!plan->n_images) return;
-  for (long k = 0; k < sum->film_size; k++) sum->film[k] += frame[k];
-  keep_images(plan, i, frame, sum->film, value);
-}
-
-// What is kept of a run, from its vector.
-static void keep_run(const struct group_plan *plan, const double *value, double *kept) {
-  for (int c = 0; plan->kept_width && c < plan->group->n_cells; c++)
-    for (int p = 0; p < plan->n_probes; p++) {
-      const double *series = value + plan_series(plan, c, p);
-      double *out = kept + plan_kept(plan, c, p), sum = 0;
-      memcpy(out, series + plan->average_at, (size_t)plan->n_checkpoints * sizeof *out);
-      uint64_t i = 0;
-      for (int k = 0; plan->companion[c] && k < plan->n_checkpoints; k++) {
-        for (; i < plan->checkpoint[k]; i++) sum += series[plan->richardson_at + (long)i];
-        out[plan->n_checkpoints + k] = sum / (double)i;
-      }
-    }
-}
-
-static struct block_time clock_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return (struct block_time){progress_clock_s(), (double)now.tv_sec + 1e-9 * (double)now.tv_nsec,
-                             0};
-}
-
-// Adds what passed since `begin`; bytes are the most of any.
-static void take_time(struct block_time *time, struct block_time begin, int64_t bytes) {
-  struct block_time now = clock_now();
-  time->wall_s += now.wall_s - begin.wall_s;
-  time->cpu_s += now.cpu_s - begin.cpu_s;
-  time->photon_bytes = time->photon_bytes < bytes ? bytes : time->photon_bytes;
-}
-
-// What one run after the other works on.
-struct at_work {
-  const struct group_plan *plan;
-  void *state;   // the integrator's
-  double *frame; // of one iteration
-  double *value; // [width]
-  struct averages sum;
-  struct block_time *time; // [n_times], added to
-  struct progress *progress;
-  double run_work;
-};
-
-// Long runs are seen to advance, short iterations not slowed down.
-static void show_advance(const struct at_work *at, uint64_t i) {
-  enum { STEPS = 64 };
-  uint64_t n = at->plan->cell->iterations;
-  uint64_t steps = i * STEPS / n - (i - 1) * STEPS / n;
-  if (steps) progress_advance(at->progress, at->run_work * (double)steps / STEPS);
-}
-
-static void run_once(struct at_work *at, uint64_t run, struct block_time begin) {
-  const struct group_plan *plan = at->plan;
-  const struct integrator_type *integrator = plan->cell->integrator;
-  struct averages *sum = &at->sum;
-  memset(sum->probe, 0, (size_t)(plan->group->n_cells * plan->n_probes) * sizeof *sum->probe);
-  memset(sum->film, 0, (size_t)sum->film_size * sizeof *sum->film);
-  integrator->begin(at->state, run);
-  int next = 0, t = 0;
-  int64_t most = 0;
-  for (uint64_t i = 1; i <= plan->cell->iterations; i++) {
-    if (plan->radius_at) keep_radii(plan, i, at->state, at->value);
-    integrator->step(at->state, i, at->frame);
-    int64_t bytes = integrator->bytes ? integrator->bytes(at->state) : 0;
-    most = most < bytes ? bytes : most;
-    bool due = plan->checkpoint[next] == i;
-    keep(plan, i, due ? next : -1, at->frame, sum, at->value);
-    next += due;
-    if (plan_time_at(plan, t) == i) take_time(&at->time[t++], begin, most);
-    show_advance(at, i);
-  }
-}
 
 int block_runs(const struct group_plan *plan, uint64_t block) {
   uint64_t left = plan->runs - block * RUNS_PER_BLOCK;
@@ -161,31 +23,42 @@ struct block block_new(const struct group_plan *plan, uint64_t block, struct are
   };
 }
 
-void block_compute(const struct group_plan *plan, uint64_t block, struct block *out,
-                   struct progress *progress, double run_work, struct arena scratch) {
-  const struct measurement *measure = &plan->measure;
-  long estimate = (long)measure->n_points * measure->features.n_channels;
-  long film_size = plan->n_images ? plan->group->n_cells * estimate : 0;
-  struct block_time begin = clock_now(); // the first run's time has what all share
-  struct at_work at = {.plan = plan,
-                       .state = plan->cell->integrator->create(measure, &scratch),
-                       .frame = arena_new(&scratch, double, measure->n_estimators *estimate),
-                       .value = arena_new(&scratch, double, plan->width),
-                       .sum = {arena_new(&scratch, double, plan->group->n_cells * plan->n_probes),
-                               arena_new(&scratch, double, film_size), film_size},
-                       .time = out->time,
-                       .progress = progress,
-                       .run_work = run_work};
-  struct moments *leaf = arena_new(&scratch, struct moments, plan->width);
-  struct moments_tree tree = moments_tree_new(plan->width, &scratch);
+struct block_sum block_begin(const struct group_plan *plan, uint64_t number, struct block *out,
+                             struct arena *arena) {
   memset(out->time, 0, (size_t)plan->n_times * sizeof *out->time);
-  for (int run = 1; run <= block_runs(plan, block); run++, begin = clock_now()) {
-    run_once(&at, block * RUNS_PER_BLOCK + (uint64_t)run, begin);
-    for (long k = 0; k < plan->width; k++) leaf[k] = moments_of(at.value[k]);
-    moments_tree_push(&tree, leaf, &scratch);
-    keep_run(plan, at.value, out->kept + (run - 1) * plan->kept_width);
-  }
-  moments_tree_root(&tree, out->moments);
+  return (struct block_sum){.plan = plan,
+                            .number = number,
+                            .block = out,
+                            .leaf = arena_new(arena, struct moments, plan->width),
+                            .tree = moments_tree_new(plan->width, arena)};
+}
+
+static void add_time(struct block_time *sum, const struct block_time *time) {
+  sum->wall_s += time->wall_s;
+  sum->cpu_s += time->cpu_s;
+  if (sum->photon_bytes < time->photon_bytes) sum->photon_bytes = time->photon_bytes;
+}
+
+bool block_add(struct block_sum *sum, const struct worker *worker, struct arena *arena) {
+  const struct group_plan *plan = sum->plan;
+  for (int t = 0; t < plan->n_times; t++) add_time(&sum->block->time[t], &worker->time[t]);
+  worker_keep(worker, sum->block->kept + (long)sum->tree.count * plan->kept_width);
+  for (long k = 0; k < plan->width; k++) sum->leaf[k] = moments_of(worker->value[k]);
+  moments_tree_push(&sum->tree, sum->leaf, arena);
+  if (sum->tree.count < (uint64_t)block_runs(plan, sum->number)) return false;
+  moments_tree_root(&sum->tree, sum->block->moments);
+  return true;
+}
+
+void block_compute(const struct group_plan *plan, uint64_t number, struct block *out,
+                   struct progress *progress, double run_work, struct arena scratch) {
+  struct block_sum sum = block_begin(plan, number, out, &scratch);
+  struct arena own = arena_reserve(), reserved = own;
+  struct worker *worker = worker_new(plan, &own);
+  uint64_t run = number * RUNS_PER_BLOCK;
+  do worker_run(worker, ++run, progress, run_work);
+  while (!block_add(&sum, worker, &scratch));
+  arena_release(reserved);
 }
 
 // ---- files ----

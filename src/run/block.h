@@ -4,14 +4,7 @@
 #ifndef RUN_BLOCK_H
 #define RUN_BLOCK_H
 
-#include "run/plan.h"
-#include "run/progress.h"
-
-// What the runs of a block took until some iteration, all together; not part of any result.
-struct block_time {
-  double wall_s, cpu_s;
-  int64_t photon_bytes; // the most an iteration held, of photons and what finds them
-};
+#include "run/worker.h"
 
 // How many runs the block has: RUNS_PER_BLOCK, or less at the end.
 int block_runs(const struct group_plan *, uint64_t block);
@@ -24,7 +17,20 @@ struct block {
 };
 struct block block_new(const struct group_plan *, uint64_t block, struct arena *);
 
-// Over each run the progress advances by `run_work`.
+// A block on its way: runs added in their order, whoever computed them.
+struct block_sum {
+  const struct group_plan *plan;
+  uint64_t number;
+  struct block *block;
+  struct moments *leaf;
+  struct moments_tree tree;
+};
+struct block_sum block_begin(const struct group_plan *, uint64_t number, struct block *out,
+                             struct arena *);
+// The next run, the worker's last one. True: it was the last of the block, which is ready now.
+bool block_add(struct block_sum *, const struct worker *, struct arena *);
+
+// All of it on this thread. Over each run the progress advances by `run_work`.
 void block_compute(const struct group_plan *, uint64_t block, struct block *out, struct progress *,
                    double run_work, struct arena scratch);
 

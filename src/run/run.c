@@ -17,6 +17,7 @@ struct unit {
   int group;
   uint64_t block;
   double work; // seconds expected on one thread
+  bool begun, refused;
 };
 
 struct units {
@@ -59,10 +60,11 @@ static void add_missing(const struct plan *plan, int g, const char *folder, stru
   for (uint64_t b = 0; b < group->n_blocks; b++) {
     struct arena scratch = *arena;
     if (!block_times(group, b, folder, &scratch))
-      *arena_push(arena, units) = (struct unit){g, b, 0};
+      *arena_push(arena, units) = (struct unit){.group = g, .block = b};
   }
   if (units->count == first) return;
-  double run_s = run_seconds(group, *arena);
+  bool matters = plan->n_groups > 1 || !plan->options.quiet; // for their order, or to be said
+  double run_s = matters ? run_seconds(group, *arena) : 0;
   units->total_s += run_s * (double)group->runs;
   for (ptrdiff_t k = first; k < units->count; k++) {
     units->item[k].work = run_s * block_runs(group, units->item[k].block);
@@ -79,27 +81,86 @@ static struct units units_left(const struct plan *plan, const char *folder, stru
   return units;
 }
 
-static void compute(const struct group_plan *plan, const struct unit *unit, const char *folder,
-                    struct progress *progress, struct arena scratch) {
-  struct block block = block_new(plan, unit->block, &scratch);
-  double run_work = unit->work / block_runs(plan, unit->block);
-  block_compute(plan, unit->block, &block, progress, run_work, scratch);
-  block_write(plan, unit->block, folder, &block, scratch);
+// ---- all units on all threads ----
+// Runs are taken in their order by whoever is free, so that a few of them keep all threads busy,
+// and added to their block in that order. What waits for its turn is never more than a run.
+
+// The block that runs are being added to.
+struct open_block {
+  struct arena arena, kept; // `kept`: where it begins
+  struct block block;
+  struct block_sum sum;
+};
+
+static void add_run(const struct plan *plan, const struct unit *unit, const struct worker *worker,
+                    const char *folder, struct open_block *open) {
+  const struct group_plan *group = &plan->group[unit->group];
+  if (worker->run % RUNS_PER_BLOCK == 1) {
+    open->arena = open->kept;
+    open->block = block_new(group, unit->block, &open->arena);
+    open->sum = block_begin(group, unit->block, &open->block, &open->arena);
+  }
+  if (block_add(&open->sum, worker, &open->arena))
+    block_write(group, unit->block, folder, &open->block, open->arena);
 }
 
-// All units on all threads. Each writes its own file, so there is nothing to share but the queue.
-static void compute_all(const struct plan *plan, const char *folder, const struct units *units,
-                        struct progress *progress) {
-#pragma omp parallel num_threads(plan_threads(&plan->options))
+// Whether the unit is computed: an interrupted run finishes those it has begun.
+static bool goes_on(struct unit *unit) {
+  bool on;
+#pragma omp critical(unit)
   {
-    struct arena scratch = arena_reserve();
-#pragma omp for schedule(dynamic, 1)
-    for (ptrdiff_t k = 0; k < units->count; k++) {
-      if (interrupt_signal()) continue;
-      const struct unit *unit = &units->item[k];
-      compute(&plan->group[unit->group], unit, folder, progress, scratch);
+    if (!unit->begun) unit->refused |= interrupt_signal() != 0;
+    unit->begun = true;
+    on = !unit->refused;
+  }
+  return on;
+}
+
+struct run_of_unit {
+  struct unit *unit;
+  uint64_t run;
+};
+
+static struct run_of_unit *runs_of(const struct plan *plan, const struct units *units,
+                                   ptrdiff_t *count, struct arena *arena) {
+  struct {
+    struct run_of_unit *item;
+    ptrdiff_t count, capacity;
+  } runs = {0};
+  for (ptrdiff_t k = 0; k < units->count; k++) {
+    struct unit *unit = &units->item[k];
+    int n = block_runs(&plan->group[unit->group], unit->block);
+    for (int run = 1; run <= n; run++)
+      *arena_push(arena, &runs) =
+          (struct run_of_unit){unit, unit->block * RUNS_PER_BLOCK + (uint64_t)run};
+  }
+  *count = runs.count;
+  return runs.item;
+}
+
+static void compute_all(const struct plan *plan, const char *folder, const struct units *units,
+                        struct progress *progress, struct arena scratch) {
+  ptrdiff_t n;
+  const struct run_of_unit *runs = runs_of(plan, units, &n, &scratch);
+  struct open_block open = {.kept = scratch};
+#pragma omp parallel num_threads(plan_threads(&plan->options)) if (n > 1)
+  {
+    struct arena reserved = arena_reserve(), own = reserved;
+    struct worker *worker = NULL; // of a group; made again for another
+#pragma omp for schedule(dynamic, 1) ordered
+    for (ptrdiff_t k = 0; k < n; k++) {
+      struct unit *unit = runs[k].unit;
+      const struct group_plan *group = &plan->group[unit->group];
+      if (!goes_on(unit)) continue;
+      if (!worker || worker->plan != group) {
+        own = reserved;
+        worker = worker_new(group, &own);
+      }
+      worker_run(worker, runs[k].run, progress, unit->work / block_runs(group, unit->block));
+#pragma omp ordered
+      add_run(plan, unit, worker, folder, &open);
     }
-    arena_release(scratch);
+    arena_release(reserved);
   }
 }
 
@@ -165,10 +226,11 @@ static void announce(const struct plan *plan, const struct units *units, const c
 }
 
 // The blocks that are missing. False: interrupted.
-static bool make_blocks(const struct plan *plan, const struct units *units, const char *folder) {
+static bool make_blocks(const struct plan *plan, const struct units *units, const char *folder,
+                        struct arena scratch) {
   struct progress progress = progress_begin(plan->experiment->name, units->total_s,
                                             units->total_s - units->left_s, plan->options.quiet);
-  compute_all(plan, folder, units, &progress);
+  compute_all(plan, folder, units, &progress, scratch);
   progress_end(&progress);
   return !interrupt_signal();
 }
@@ -177,10 +239,10 @@ static bool make_blocks(const struct plan *plan, const struct units *units, cons
 // interrupted.
 static bool make_runs(struct plan *plan, struct units units, struct probe *const *probe,
                       const char *folder, struct arena scratch, struct problem *problem) {
-  for (;;) {
-    struct arena own = scratch;
-    if (!make_blocks(plan, &units, folder)) return false;
-    if (!look_again(plan, probe, folder, scratch, problem)) return !problem->text[0];
+  for (struct arena own = scratch;;) {
+    if (!make_blocks(plan, &units, folder, own)) return false;
+    if (!look_again(plan, probe, folder, own, problem)) return !problem->text[0];
+    own = scratch;
     units = units_left(plan, folder, &own);
   }
 }
