@@ -28,12 +28,12 @@ typedef unsigned find_inside(const struct vec position[N_RIM], double p, struct 
 static unsigned inside_by_grid(const struct vec position[N_RIM], double p, struct arena *arena) {
   struct photons photons = {.count = N_RIM, .position = (struct vec *)position};
   struct grid grid = {0};
-  uint32_t photon[N_RIM];
-  double distance2[N_RIM];
+  uint32_t at[N_RIM + GRID_ROOM];
+  double distance2[N_RIM + GRID_ROOM];
   unsigned inside = 0;
   grid_build(&grid, &photons, 1, arena);
-  int n = grid_find(&grid, vec(p, p, p), 1, photon, distance2);
-  for (int j = 0; j < n; j++) inside |= 1u << photon[j];
+  int n = grid_find(&grid, vec(p, p, p), 1, at, distance2);
+  for (int j = 0; j < n; j++) inside |= 1u << grid.photon[at[j]];
   return inside;
 }
 
@@ -126,12 +126,12 @@ static void cloud(double half, struct vec position[N_CLOUD]) {
 }
 
 static int mistakes_at(const struct grid *grid, const struct vec *position, struct vec p) {
-  static uint32_t photon[N_CLOUD];
-  static double distance2[N_CLOUD];
+  static uint32_t at[N_CLOUD + GRID_ROOM];
+  static double distance2[N_CLOUD + GRID_ROOM];
   static signed char surplus[N_CLOUD];
-  int mistakes = 0, n = grid_find(grid, p, 1, photon, distance2);
+  int mistakes = 0, n = grid_find(grid, p, 1, at, distance2);
   memset(surplus, 0, sizeof surplus);
-  for (int j = 0; j < n; j++) surplus[photon[j]]++;
+  for (int j = 0; j < n; j++) surplus[grid->photon[at[j]]]++;
   for (int j = 0; j < N_CLOUD; j++) {
     struct vec d = vec_sub(position[j], p);
     mistakes += surplus[j] != (vec_dot(d, d) < 1);

@@ -124,7 +124,7 @@ static double estimate_of_a_disc(double unused, double n) {
   double out = 0;
   struct pair exact = {0, 0};
   grid_build(&grid, &photons, disc.r, &scratch);
-  gather_point(&gather, &photons, &grid, &point, 1, &disc, 1, NULL, &out, 1, &scratch);
+  gather_point(&gather, &grid, &point, 1, &disc, 1, NULL, &out, 1, &scratch);
   for (int64_t j = 0; j < photons.count; j++)
     exact = pair_add(exact, (struct pair){photons.flux[0][j], 0});
   arena_release(arena);

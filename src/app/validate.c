@@ -197,7 +197,7 @@ static double ball_integral(const struct rule *rule, const struct kernel *kernel
   static const double sphere[] = {0, 2, 0x1.921fb54442d18p+2, 0x1.921fb54442d18p+3}; // 2, 2pi, 4pi
   double t2[N_NODES], w[N_NODES], sum = 0;
   for (int j = 0; j < N_NODES; j++) t2[j] = rule->node[j] * rule->node[j];
-  kernel->shape(t2, w, N_NODES);
+  kernel_weigh(kernel, t2, 1, w, N_NODES);
   for (int j = 0; j < N_NODES; j++) {
     double term = rule->weight[j] * w[j] * (exponent == 2 ? w[j] : 1);
     for (int k = 0; k < d - 1 + power; k++) term *= rule->node[j];

@@ -8,7 +8,6 @@ static void reserve(struct beam_gather *gather, int64_t count, int n_channels,
   gather->capacity = 2 * count;
   gather->found = arena_new(arena, uint32_t, gather->capacity);
   gather->u2 = arena_new(arena, double, gather->capacity);
-  gather->t2 = arena_new(arena, double, gather->capacity);
   gather->weight = arena_new(arena, double, gather->capacity);
   for (int c = 0; c < n_channels; c++)
     gather->value[c] = arena_new(arena, double, gather->capacity);
@@ -50,23 +49,6 @@ static int weigh(struct beam_gather *gather, const struct walk *walk, const stru
   return kept;
 }
 
-static void evaluate(struct beam_gather *gather, const struct strip *strip, int n) {
-  double inverse_r2 = 1 / (strip->r * strip->r);
-  for (int j = 0; j < n; j++) {
-    double t2 = gather->u2[j] * inverse_r2;
-    gather->t2[j] = t2 < 1 ? t2 : 0;
-  }
-  strip->kernel->shape(gather->t2, gather->weight, n);
-  for (int j = 0; j < n; j++)
-    gather->weight[j] = gather->u2[j] * inverse_r2 < 1 ? gather->weight[j] : 0;
-}
-
-static double weighted_sum(const double *weight, const double *value, int n) {
-  double lane[SUM_LANES] = {0};
-  for (int j = 0; j < n; j++) lane[j % SUM_LANES] += weight[j] * value[j];
-  return sum_lanes(lane);
-}
-
 static bool is_a_strip(double r) { return r * r > 0 && r * r < INFINITY; }
 
 static double largest_radius(const struct strip *strip, int n_strips) {
@@ -87,9 +69,9 @@ void beam_gather_segment(struct beam_gather *gather, const struct walk *walk,
   int n = weigh(gather, walk, beams, eye, depth, r, found);
   for (int e = 0; e < n_strips; e++) {
     if (n == 0 || !is_a_strip(strip[e].r)) continue;
-    evaluate(gather, &strip[e], n);
+    kernel_weigh(strip[e].kernel, gather->u2, strip[e].r, gather->weight, n);
     for (int c = 0; c < beams->n_channels; c++)
       out[e * stride + c] +=
-          eye->weight[c] * (strip[e].scale * weighted_sum(gather->weight, gather->value[c], n));
+          eye->weight[c] * (strip[e].scale * sum_products(gather->weight, gather->value[c], n));
   }
 }

@@ -33,7 +33,7 @@ static inline struct strip strip_of(const struct kernel *kernel, double c, doubl
 struct beam_gather {
   int64_t capacity;
   uint32_t *found;
-  double *u2, *t2, *weight, *value[3];
+  double *u2, *weight, *value[3];
   unsigned left_out; // bits of enum light_path: beams of these bring nothing
 };
 

@@ -40,7 +40,7 @@ static inline struct disc disc_of(const struct kernel *kernel, double c, double 
 struct gather {
   int64_t capacity;
   uint32_t *photon;
-  double *distance2, *t2, *weight, *value[3];
+  double *distance2, *weight, *value[3];
   unsigned left_out; // bits of enum light_path: photons of these count, but bring nothing
 };
 
@@ -49,9 +49,9 @@ struct gather {
 // depth: pbrt's maxdepth of the whole path. count: NULL, or the photons within each disc that the
 // point scatters. Where a radius is 0 or infinite (or its square is, or it is no number) there is
 // no disc: nothing is added and nothing counted.
-void gather_point(struct gather *, const struct photons *, const struct grid *,
-                  const struct eye_point *, int depth, const struct disc *, int n_discs,
-                  int64_t *count, double *out, long stride, struct arena *);
+void gather_point(struct gather *, const struct grid *, const struct eye_point *, int depth,
+                  const struct disc *, int n_discs, int64_t *count, double *out, long stride,
+                  struct arena *);
 
 // The same for radii of any size.
 void gather_point_in_tree(struct gather *, const struct photons *, const struct knn *,

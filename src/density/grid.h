@@ -1,7 +1,9 @@
-// The photon grid: who lies within r of a point. Cubic cells of edge r, hashed into buckets, filled
+// The photon grid: who lies within r of a point. Cubic cells of edge r in boxes of boxes of cells:
+// the cell (x, y, z) is in the bucket of (x mod X, y mod Y, z mod Z), powers of two of at least 16
+// (less where no photon is), so that the cells of a ball are in different buckets, those along x in
+// neighbouring ones, and what is in a bucket with them is too far from it. The buckets are filled
 // by a stable counting sort, so that a query finds photons in one order: cells by (z, y, x), within
-// a cell as stored. A photon of another cell that shares the bucket is told apart by its cell, so
-// no photon is ever found twice.
+// a cell as stored.
 #ifndef DENSITY_GRID_H
 #define DENSITY_GRID_H
 
@@ -10,22 +12,17 @@
 #include "scene/scene.h"
 #include "walk/photons.h"
 
-// Numbers of cells modulo 2^32: of two cells with the same numbers one is too far from any point to
-// matter, and the distance says which. So any coordinate has a cell.
-struct grid_cell {
-  uint32_t x, y, z;
-};
-
 struct grid {
   double r, inverse_edge;
-  uint32_t mask;   // buckets - 1, a power of two
-  uint32_t *first; // [mask + 2] of each bucket's photons
-  int64_t count, capacity;
-  uint32_t bucket_capacity;
-  struct vec *position;   // sorted
-  struct grid_cell *cell; // of each sorted photon
-  uint32_t *photon;       // its number in struct photons
-  uint32_t *bucket;       // scratch: by photon
+  int deepest;          // of their photons->vertex
+  int64_t lo[3], hi[3]; // cells of the photons' box
+  int bits[3];          // X = 1 << bits[0], ...
+  uint32_t *first;      // [X Y Z + 1] of each bucket's photons; x varies fastest
+  int64_t count, capacity, bucket_capacity;
+  double *position[3];   // sorted; GRID_ROOM more than there are photons
+  struct photons sorted; // the same photons, without positions
+  uint32_t *photon;      // their numbers before
+  uint32_t *bucket;      // scratch: by photon
 };
 
 // Whether r is resolved in a scene within these bounds: at least 100 times the spacing of floats at
@@ -35,15 +32,22 @@ bool grid_radius_is_resolved(struct box bounds, double r, struct problem *);
 // Sorts the photons; grows in the arena.
 void grid_build(struct grid *, const struct photons *, double r, struct arena *);
 
-// Photons within r of p, r at most the grid's: their numbers in struct photons and squared
-// distances, in the grid's order. At most `count` of the photons there are.
-int grid_find(const struct grid *, struct vec p, double r, uint32_t *photon, double *distance2);
+enum { GRID_ROOM = 8 };
+
+// Photons within r of p, r at most the grid's: their numbers among the sorted and their squared
+// distances, in the grid's order. At most `count` of the photons there are; the arrays have
+// GRID_ROOM more.
+int grid_find(const struct grid *, struct vec p, double r, uint32_t *at, double *distance2);
+
+static inline int64_t grid_buckets(const struct grid *grid) {
+  return INT64_C(1) << (grid->bits[0] + grid->bits[1] + grid->bits[2]);
+}
 
 // Of what it holds.
 static inline int64_t grid_bytes(const struct grid *grid) {
-  return grid->count *
-             (int64_t)(sizeof(struct vec) + sizeof(struct grid_cell) + 2 * sizeof(uint32_t)) +
-         ((int64_t)grid->mask + 2) * (int64_t)sizeof(uint32_t);
+  return grid->count * (int64_t)(3 * sizeof(double) + 2 * sizeof(uint32_t)) +
+         photons_bytes(&grid->sorted) - grid->count * (int64_t)sizeof(struct vec) +
+         (grid_buckets(grid) + 1) * (int64_t)sizeof(uint32_t);
 }
 
 // The cells that the ball of radius r around any of n points meets, as a filter for photons_trace.

@@ -1,157 +1,10 @@
-// The kernels. To add one, add a row: its shape on |u|^2 in [0, 1) and its constants.
 #include "density/kernel.h"
 
-#include "numeric/elementary.h"
+#include "base/level.h"
 
-#include <assert.h>
-#include <math.h>
 #include <string.h>
 
-static const double pi = 0x1.921fb54442d18p+1;
-
-static double ball_volume(int d) {
-  assert(d >= 1 && d <= 3);
-  return d == 1 ? 2 : d == 2 ? pi : 4 * pi / 3;
-}
-
-// ---- (1 - |u|^2)^s ----
-static void box_shape(const double *t2, double *w, int n) {
-  (void)t2;
-  for (int j = 0; j < n; j++) w[j] = 1;
-}
-
-static void epanechnikov_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = 1 - t2[j];
-}
-
-static void biweight_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = (1 - t2[j]) * (1 - t2[j]);
-}
-
-static void triweight_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = (1 - t2[j]) * (1 - t2[j]) * (1 - t2[j]);
-}
-
-// c = Gamma(s + 1 + d/2) / (pi^(d/2) s!).
-static double family_c(int s, int d) {
-  double c = 1;
-  for (int k = 1; k <= s; k++) c = c * (2 * k + d) / (2 * k);
-  return c / ball_volume(d);
-}
-
-// psi_s^2 is a multiple of psi_2s.
-static struct kernel_constants family_constants(int s, int d) {
-  double c = family_c(s, d), roughness = c * c / family_c(2 * s, d);
-  return (struct kernel_constants){
-      .c = c,
-      .mu2 = 1.0 / (d + 2 * s + 2),
-      .roughness = roughness,
-      .roughness2 = roughness * d / (d + 4 * s + 2),
-  };
-}
-
-static struct kernel_constants box_constants(int d) { return family_constants(0, d); }
-static struct kernel_constants epanechnikov_constants(int d) { return family_constants(1, d); }
-static struct kernel_constants biweight_constants(int d) { return family_constants(2, d); }
-static struct kernel_constants triweight_constants(int d) { return family_constants(3, d); }
-
-// ---- 1 - |u| ----
-static void cone_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = 1 - sqrt(t2[j]);
-}
-
-static struct kernel_constants cone_constants(int d) {
-  double volume = ball_volume(d), roughness = 2 * (d + 1) / ((d + 2) * volume);
-  return (struct kernel_constants){
-      .c = (d + 1) / volume,
-      .mu2 = (d + 1.0) / ((d + 2) * (d + 3)),
-      .roughness = roughness,
-      .roughness2 = roughness * d * (d + 1) / ((d + 3) * (d + 4)),
-  };
-}
-
-// ---- Gaussian cut at three standard deviations and normalised there ----
-enum { CUT = 3 }; // sigma = radius / CUT
-
-static void gaussian_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = num_exp(-0.5 * CUT * CUT * t2[j]);
-}
-
-// Regularised lower incomplete gamma function P(twice_a / 2, x), its series of positive terms:
-// x^a e^-x / Gamma(a + 1) (1 + x/(a+1) + x^2/((a+1)(a+2)) + ...).
-static double incomplete_gamma(int twice_a, double x) {
-  double factor = num_exp(-x) * (twice_a % 2 ? 2 * sqrt(x / pi) : x); // a = 1/2 or 1
-  for (int k = twice_a % 2 ? 3 : 4; k <= twice_a; k += 2) factor = factor * x / (0.5 * k);
-  double sum = 0, term = 1, a = 0.5 * twice_a;
-  for (int k = 1; sum + term != sum; k++) {
-    sum += term;
-    term = term * x / (a + k);
-  }
-  return factor * sum;
-}
-
-static struct kernel_constants gaussian_constants(int d) {
-  double x = 0.5 * CUT * CUT, inside = incomplete_gamma(d, x), c = 1 / inside, square = 1;
-  for (int k = 0; k < d; k++) {
-    c = c * CUT / sqrt(2 * pi);
-    square = square * sqrt(pi) / CUT;
-  }
-  double inside2 = incomplete_gamma(d, 2 * x), roughness = c * c * square * inside2;
-  return (struct kernel_constants){
-      .c = c,
-      .mu2 = incomplete_gamma(d + 2, x) / (CUT * CUT * inside),
-      .roughness = roughness,
-      .roughness2 = roughness * d / (2 * CUT * CUT) * incomplete_gamma(d + 2, 2 * x) / inside2,
-  };
-}
-
-// ---- 1 - 10 t^3 + 15 t^4 - 6 t^5 = (1 - t)^3 (1 + 3 t + 6 t^2): two continuous derivatives ----
-static void quintic_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) {
-    double t = sqrt(t2[j]), rest = 1 - t;
-    w[j] = rest * rest * rest * (1 + 3 * t + 6 * t2[j]);
-  }
-}
-
-// Integral over [0, 1] of t^m w(t), by parts with w' = -30 t^2 (1 - t)^2.
-static double quintic_moment(int m) { return 60.0 / ((m + 1) * (m + 4) * (m + 5) * (m + 6)); }
-
-// Of t^m w(t)^2, with w^2 = (1 - t)^6 (1 + 6 t + 21 t^2 + 36 t^3 + 36 t^4) and the Beta integral
-// of t^n (1 - t)^6 = 6! n! / (n + 7)!.
-static double quintic_square_moment(int m) {
-  static const double coefficient[] = {1, 6, 21, 36, 36};
-  double sum = 0;
-  for (int k = 0; k <= 4; k++) {
-    double beta = 720;
-    for (int j = 1; j <= 7; j++) beta /= m + k + j;
-    sum += coefficient[k] * beta;
-  }
-  return sum;
-}
-
-static struct kernel_constants quintic_constants(int d) {
-  double sphere = d * ball_volume(d), c = 1 / (sphere * quintic_moment(d - 1));
-  return (struct kernel_constants){
-      .c = c,
-      .mu2 = quintic_moment(d + 1) / (d * quintic_moment(d - 1)),
-      .roughness = c * c * sphere * quintic_square_moment(d - 1),
-      .roughness2 = c * c * sphere * quintic_square_moment(d + 1),
-  };
-}
-
-// clang-format off
-const struct kernel kernels[] = {
-  {"box", "1", "Jensen 1996", box_shape, box_constants},
-  {"cone", "1 - t", "Jensen 1996 (k = 1)", cone_shape, cone_constants},
-  {"epanechnikov", "1 - t^2", "Epanechnikov 1969", epanechnikov_shape, epanechnikov_constants},
-  {"biweight", "(1 - t^2)^2", "Silverman 1986", biweight_shape, biweight_constants},
-  {"triweight", "(1 - t^2)^3", "Silverman 1986", triweight_shape, triweight_constants},
-  {"gaussian", "exp(-9 t^2 / 2)", "cut at 3 sigma, normalised", gaussian_shape, gaussian_constants},
-  {"quintic", "1 - 10 t^3 + 15 t^4 - 6 t^5", "Hachisuka, Jarosz, Jensen 2010", quintic_shape,
-   quintic_constants},
-};
-// clang-format on
-const int n_kernels = sizeof kernels / sizeof kernels[0];
+LEVEL_TABLES(kernel_level);
 
 const struct kernel *kernel_find(const char *name) {
   for (int k = 0; k < n_kernels; k++)
@@ -159,9 +12,12 @@ const struct kernel *kernel_find(const char *name) {
   return NULL;
 }
 
+int kernel_weigh(const struct kernel *kernel, const double *distance2, double r, double *w, int n) {
+  return LEVEL_TABLE(kernel_level)->row[kernel - kernels].weigh(distance2, r, w, n);
+}
+
 double kernel_value(const struct kernel *kernel, int d, double t2) {
-  if (!(t2 < 1)) return 0;
   double w;
-  kernel->shape(&t2, &w, 1);
+  kernel_weigh(kernel, &t2, 1, &w, 1);
   return kernel->constants(d).c * w;
 }

@@ -1,5 +1,6 @@
 // Kernels psi on the unit ball: k_r(y) = r^-d psi(|y|/r), integral 1 in d dimensions (theory 1.2).
-// A radius is always the support. A kernel is one row of the table in kernel.c; nothing else knows one.
+// A radius is always the support. A kernel is one row of the table in kernel.lanes.c; nothing else
+// knows one.
 #ifndef DENSITY_KERNEL_H
 #define DENSITY_KERNEL_H
 
@@ -12,16 +13,26 @@ struct kernel_constants {
 
 struct kernel {
   const char *name, *formula, *source;
-  // w[j] = psi(u) / psi(0) at |u|^2 = t2[j] in [0, 1), j < n; the caller makes the test |u| < 1.
-  void (*shape)(const double *t2, double *w, int n);
+  // The body of kernel_weigh.
+  int (*weigh)(const double *distance2, double r, double *w, int n);
   // Closed forms in d = 1, 2, 3 dimensions.
   struct kernel_constants (*constants)(int d);
 };
 
-extern const struct kernel kernels[];
-extern const int n_kernels;
+// The table; each SIMD level has one, with the same rows but for `weigh`.
+struct kernel_level {
+  const struct kernel *row;
+  int n;
+};
+extern const struct kernel_level kernel_level_scalar;
+#define kernels (kernel_level_scalar.row)
+#define n_kernels (kernel_level_scalar.n)
 
 const struct kernel *kernel_find(const char *name); // NULL if unknown
+
+// w[j] = psi(u) / psi(0) at |u|^2 = distance2[j] * (1 / (r * r)), j < n; 0 where that is not below
+// 1. Returns at how many it is.
+int kernel_weigh(const struct kernel *, const double *distance2, double r, double *w, int n);
 
 // psi at |u|^2 = t2 in dimension d; 0 for t2 >= 1.
 double kernel_value(const struct kernel *, int d, double t2);

@@ -229,9 +229,9 @@ static void gather(struct local *local, struct local_worker *worker, int j, doub
     tile->disc[e] = disc_of(measure->estimator[e].kernel, map->field[kind].c[e],
                             radius(local, field, j, e), field->d, measure->n_emitted);
   int level = level_of(largest_r1(measure, kind), largest_radius(local, field, j));
-  gather_point(&tile->gather, &map->field[kind].photons, &field->grid[level], point, measure->depth,
-               tile->disc, n, worker->found, frame + (long)j * n_channels,
-               (long)measure->n_points * n_channels, worker->arena);
+  gather_point(&tile->gather, &field->grid[level], point, measure->depth, tile->disc, n,
+               worker->found, frame + (long)j * n_channels, (long)measure->n_points * n_channels,
+               worker->arena);
 }
 
 // The next pass' r^d of each estimator at a point: a law without local statistics shrinks both

@@ -119,8 +119,8 @@ void photon_map_gather(struct photon_map *map, int j, const double *r, int64_t *
     gather_point_in_tree(&map->tile.gather, &field->photons, &field->tree, point, measure->depth,
                          map->tile.disc, measure->n_estimators, count, out, stride, map->arena);
   else
-    gather_point(&map->tile.gather, &field->photons, &field->grid, point, measure->depth,
-                 map->tile.disc, measure->n_estimators, count, out, stride, map->arena);
+    gather_point(&map->tile.gather, &field->grid, point, measure->depth, map->tile.disc,
+                 measure->n_estimators, count, out, stride, map->arena);
 }
 
 void photon_map_nearest(struct photon_map *map, int j, const int *k, double *frame) {

@@ -2,15 +2,12 @@
 // argument as a pair, so that pow keeps its accuracy where |y ln x| is large; the others are
 // special cases of the same two functions.
 #include "numeric/elementary.h"
+#include "numeric/lanes_exp.h"
 #include "numeric/pair.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
-
-// ln 2 = LN2_HI + LN2_LO; LN2_HI has 40 bits, so that its products with exponents are exact.
-#define LN2_HI 0x1.62e42fefa2000p-1
-#define LN2_LO 0x1.9ef35793c7673p-41
 
 // 2^k, -1022 <= k <= 1023.
 static double power_of_two(int k) {
@@ -25,22 +22,6 @@ static double scale_by_two(double x, int k) {
   int half = k / 2;
   if (k < 0) half = k < -1000 ? k + 1000 : 0; // the last factor alone may be inexact
   return x * power_of_two(half) * power_of_two(k - half);
-}
-
-// exp(r) - 1 = r + r^2/2 + tail, |r| <= ln(2)/2: the tail's Taylor series, error below 2^-60.
-static double exp_tail(double r) {
-  double p = 1.0 / 6227020800;
-  p = p * r + 1.0 / 479001600;
-  p = p * r + 1.0 / 39916800;
-  p = p * r + 1.0 / 3628800;
-  p = p * r + 1.0 / 362880;
-  p = p * r + 1.0 / 40320;
-  p = p * r + 1.0 / 5040;
-  p = p * r + 1.0 / 720;
-  p = p * r + 1.0 / 120;
-  p = p * r + 1.0 / 24;
-  p = p * r + 1.0 / 6;
-  return p * (r * r * r);
 }
 
 // exp(x.hi + x.lo), below 0.6 ulp in the normal range.

@@ -15,4 +15,7 @@ static inline double sum_array(const double *x, int n) {
   return sum_lanes(lane);
 }
 
+// Of a[j] * b[j].
+double sum_products(const double *a, const double *b, int n);
+
 #endif

@@ -36,6 +36,8 @@ struct bsdf_sample {
 struct bsdf_type {
   // f(wo, wi) in 1/sr per channel, without delta lobes; wo.z and wi.z are not 0.
   void (*value)(const struct bsdf *, struct vec wo, struct vec wi, enum transport, double f[3]);
+  // value depends on the sides of wo and wi alone.
+  bool by_side;
   // The density with which `sample` gives wi, without delta lobes: integrates to 1 minus
   // delta_probability (or less, where sample returns false).
   double (*pdf)(const struct bsdf *, struct vec wo, struct vec wi, enum transport);

@@ -50,20 +50,19 @@ static void check_photons(struct photons photons, double r) {
   int n = (int)photons.count;
   struct grid grid = {0};
   grid_build(&grid, &photons, r, &arena);
-  uint32_t *photon = arena_new(&arena, uint32_t, n);
-  double *distance2 = arena_new(&arena, double, n);
+  uint32_t *at = arena_new(&arena, uint32_t, n + GRID_ROOM);
+  double *distance2 = arena_new(&arena, double, n + GRID_ROOM);
   unsigned char *in = arena_new(&arena, unsigned char, n);
   int total = 0;
   for (int q = 0; q < 200; q++) {
     struct vec p = photons.position[(q * 37) % n];
     if (q % 2) p = vec_add(p, vec(0.3 * r, -0.7 * r, 0.11 * r));
-    int expected = brute_force(&photons, p, r, in),
-        found = grid_find(&grid, p, r, photon, distance2);
+    int expected = brute_force(&photons, p, r, in), found = grid_find(&grid, p, r, at, distance2);
     assert_int_equal(found, expected);
     total += found;
     for (int k = 0; k < found; k++) {
-      assert_true(in[photon[k]]);
-      in[photon[k]] = 0; // a second time would fail
+      assert_true(in[grid.photon[at[k]]]);
+      in[grid.photon[at[k]]] = 0; // a second time would fail
     }
   }
   assert_true(total > 200); // the queries are not about nothing
@@ -133,8 +132,8 @@ static void order_does_not_depend_on_photons_elsewhere(void **state) {
   struct grid grid_all = {0}, grid_some = {0};
   grid_build(&grid_all, &all, r, &arena);
   grid_build(&grid_some, &some, r, &arena);
-  uint32_t photon[4000];
-  double d_all[4000], d_some[4000];
+  uint32_t photon[4000 + GRID_ROOM];
+  double d_all[4000 + GRID_ROOM], d_some[4000 + GRID_ROOM];
   int n = grid_find(&grid_all, p, r, photon, d_all);
   assert_int_equal(grid_find(&grid_some, p, r, photon, d_some), n);
   assert_true(n > 1);
@@ -149,8 +148,8 @@ static void photons_at_exactly_r_are_outside_and_at_zero_inside(void **state) {
   photons.position[2] = vec(0, -0.5 * (1 - 1e-15), 0);
   struct grid grid = {0};
   grid_build(&grid, &photons, 0.5, &arena);
-  uint32_t photon[3];
-  double distance2[3];
+  uint32_t photon[3 + GRID_ROOM];
+  double distance2[3 + GRID_ROOM];
   assert_int_equal(grid_find(&grid, vec(0, 0, 0), 0.5, photon, distance2), 2);
 }
 
@@ -207,7 +206,7 @@ static void gather_is_the_kernel_weighted_sum_for_every_kernel(void **state) {
     struct disc disc[2] = {disc_of(&kernels[k], c, r, 2, 1000),
                            disc_of(&kernels[k], c, 0.2, 2, 1000)};
     double out[2] = {0}, expected[2] = {0};
-    gather_point(&gather, &photons, &grid, &point, 64, disc, 2, NULL, out, 1, &arena);
+    gather_point(&gather, &grid, &point, 64, disc, 2, NULL, out, 1, &arena);
     for (int64_t j = 0; j < photons.count; j++) {
       struct vec d = vec_sub(photons.position[j], point.p);
       for (int e = 0; e < 2; e++)

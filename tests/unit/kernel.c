@@ -18,7 +18,7 @@ struct moment {
 static double integrand(double t, void *data) {
   const struct moment *m = data;
   double t2 = t * t, w;
-  m->kernel->shape(&t2, &w, 1);
+  kernel_weigh(m->kernel, &t2, 1, &w, 1);
   return pow(t, m->power) * (m->exponent == 2 ? w * w : w);
 }
 
@@ -105,7 +105,7 @@ static void shapes_start_at_one_and_never_rise(void **state) {
   double t2[N], w[N];
   for (int j = 0; j < N; j++) t2[j] = (double)j / N;
   for (int k = 0; k < n_kernels; k++) {
-    kernels[k].shape(t2, w, N);
+    kernel_weigh(&kernels[k], t2, 1, w, N);
     assert_true(w[0] == 1);
     for (int j = 1; j < N; j++) assert_true(w[j] <= w[j - 1] && w[j] > 0);
   }
@@ -120,9 +120,9 @@ static void shapes_of_arrays_are_shapes_of_their_elements(void **state) {
   for (int k = 0; k < n_kernels; k++)
     for (int n = 0; n <= N; n++) {
       for (int j = 0; j < N; j++) w[j] = 2.385;
-      kernels[k].shape(t2, w, n);
+      kernel_weigh(&kernels[k], t2, 1, w, n);
       for (int j = 0; j < n; j++) {
-        kernels[k].shape(&t2[j], &one, 1);
+        kernel_weigh(&kernels[k], &t2[j], 1, &one, 1);
         assert_true(w[j] == one);
       }
       for (int j = n; j < N; j++) assert_true(w[j] == 2.385);

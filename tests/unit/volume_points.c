@@ -228,7 +228,7 @@ static void balls_measure_a_uniform_density(void **state) {
                                 .p = p,
                                 .weight = {1},
                                 .bsdf = {.type = &constant, .volume = true}};
-      gather_point(&gather, &photons, &grid, &point, 64, &ball, 1, NULL, &sum, 1, &arena);
+      gather_point(&gather, &grid, &point, 64, &ball, 1, NULL, &sum, 1, &arena);
     }
     double z = (sum / BALLS - density) / se;
     if (!(fabs(z) < Z_LIMIT)) fail_msg("%s: %g: z = %.1f", kernels[k].name, sum / BALLS, z);

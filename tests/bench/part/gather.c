@@ -43,6 +43,7 @@ static uint64_t hash_grid(const void *data) {
 static struct job *job_new(const struct bench_scene *scene, bool grid, struct arena *arena) {
   struct job *job = arena_new(arena, struct job, 1);
   job->measure = measure_of(scene, false);
+  job->measure.keep_points = true;
   job->r = 0.05;
   job->arena = arena_new(arena, struct arena, 1);
   *job->arena = arena_reserve();

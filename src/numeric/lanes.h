@@ -1,0 +1,198 @@
+// The vector vocabulary of NAME.lanes.c files (base/level.h): LANES doubles, as many as the level
+// has in a register. The operators + - * / work on each lane; at the scalar level all is plain C.
+// Sums of numeric/sum.h are SUM_PARTS of them, part p with the lanes from p * LANES on.
+#ifndef NUMERIC_LANES_H
+#define NUMERIC_LANES_H
+
+#include "numeric/sum.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined LEVEL && defined __AVX512F__
+#include <immintrin.h>
+enum { LANES = 8 };
+typedef __m512d lanes;
+typedef __mmask8 lanes_mask;
+
+static inline lanes lanes_load(const double *x) { return _mm512_loadu_pd(x); }
+static inline void lanes_store(double *x, lanes a) { _mm512_storeu_pd(x, a); }
+static inline lanes lanes_of(double x) { return _mm512_set1_pd(x); }
+static inline lanes lanes_sqrt(lanes a) { return _mm512_sqrt_pd(a); }
+static inline lanes lanes_truncate(lanes a) {
+  return _mm512_roundscale_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_power_of_two(lanes k) {
+  __m512i low = _mm512_castpd_si512(k + (0x1p52 + 1023));
+  return _mm512_castsi512_pd(_mm512_slli_epi64(low, 52));
+}
+
+static inline lanes_mask lanes_less(lanes a, lanes b) {
+  return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return a & b; }
+static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return a | b; }
+static inline lanes_mask lanes_first(int n) { // n >= 0
+  return (lanes_mask)(n < LANES ? (1 << n) - 1 : 0xff);
+}
+static inline int lanes_count(lanes_mask mask) { return __builtin_popcount(mask); }
+
+static inline lanes lanes_where(lanes_mask mask, lanes a) { return _mm512_maskz_mov_pd(mask, a); }
+static inline lanes lanes_load_where(lanes_mask mask, const double *x) {
+  return _mm512_maskz_loadu_pd(mask, x);
+}
+static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
+  _mm512_mask_storeu_pd(x, mask, a);
+}
+static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
+                                 const uint32_t *index) {
+  __m512i at = _mm512_cvtepu32_epi64(_mm256_loadu_si256((const __m256i *)index));
+  at = stride == 1 ? at : _mm512_mul_epu32(at, _mm512_set1_epi64(stride));
+  return _mm512_mask_i64gather_pd(_mm512_setzero_pd(), mask, at, x, sizeof *x);
+}
+static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
+  _mm512_storeu_pd(x, _mm512_maskz_compress_pd(mask, a));
+}
+static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
+  __m256i number =
+      _mm256_add_epi32(_mm256_set1_epi32((int32_t)from), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  _mm256_storeu_si256((__m256i *)to, _mm256_maskz_compress_epi32(mask, number));
+}
+
+#elif defined LEVEL && defined __AVX2__
+#include <immintrin.h>
+enum { LANES = 4 };
+typedef __m256d lanes;
+typedef __m256d lanes_mask;
+
+static inline lanes lanes_load(const double *x) { return _mm256_loadu_pd(x); }
+static inline void lanes_store(double *x, lanes a) { _mm256_storeu_pd(x, a); }
+static inline lanes lanes_of(double x) { return _mm256_set1_pd(x); }
+static inline lanes lanes_sqrt(lanes a) { return _mm256_sqrt_pd(a); }
+static inline lanes lanes_truncate(lanes a) {
+  return _mm256_round_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_power_of_two(lanes k) {
+  __m256i low = _mm256_castpd_si256(k + (0x1p52 + 1023));
+  return _mm256_castsi256_pd(_mm256_slli_epi64(low, 52));
+}
+
+static inline lanes_mask lanes_less(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return _mm256_and_pd(a, b); }
+static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return _mm256_or_pd(a, b); }
+static inline lanes_mask lanes_first(int n) {
+  return lanes_less(_mm256_setr_pd(0, 1, 2, 3), lanes_of(n));
+}
+static inline unsigned lanes_bits(lanes_mask mask) { return (unsigned)_mm256_movemask_pd(mask); }
+static inline int lanes_count(lanes_mask mask) { return __builtin_popcount(lanes_bits(mask)); }
+
+static inline lanes lanes_where(lanes_mask mask, lanes a) { return _mm256_and_pd(mask, a); }
+static inline lanes lanes_load_where(lanes_mask mask, const double *x) {
+  return _mm256_maskload_pd(x, _mm256_castpd_si256(mask));
+}
+static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
+  _mm256_maskstore_pd(x, _mm256_castpd_si256(mask), a);
+}
+
+static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
+                                 const uint32_t *index) {
+  __m256i at = _mm256_cvtepu32_epi64(_mm_loadu_si128((const __m128i *)index));
+  at = stride == 1 ? at : _mm256_mul_epu32(at, _mm256_set1_epi64x(stride));
+  return _mm256_mask_i64gather_pd(_mm256_setzero_pd(), x, at, mask, sizeof *x);
+}
+
+// Which halves of doubles go to the front, by the mask's bits.
+#define HALVES(k) 2 * (k), 2 * (k) + 1
+static const int32_t lanes_order[16][8] = {
+    {0},
+    {HALVES(0)},
+    {HALVES(1)},
+    {HALVES(0), HALVES(1)},
+    {HALVES(2)},
+    {HALVES(0), HALVES(2)},
+    {HALVES(1), HALVES(2)},
+    {HALVES(0), HALVES(1), HALVES(2)},
+    {HALVES(3)},
+    {HALVES(0), HALVES(3)},
+    {HALVES(1), HALVES(3)},
+    {HALVES(0), HALVES(1), HALVES(3)},
+    {HALVES(2), HALVES(3)},
+    {HALVES(0), HALVES(2), HALVES(3)},
+    {HALVES(1), HALVES(2), HALVES(3)},
+    {HALVES(0), HALVES(1), HALVES(2), HALVES(3)},
+};
+#undef HALVES
+
+static inline __m256i lanes_packed(lanes_mask mask, __m256i a) {
+  const __m256i *order = (const __m256i *)lanes_order[lanes_bits(mask)];
+  return _mm256_permutevar8x32_epi32(a, _mm256_loadu_si256(order));
+}
+static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
+  _mm256_storeu_pd(x, _mm256_castsi256_pd(lanes_packed(mask, _mm256_castpd_si256(a))));
+}
+static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
+  __m256i number = _mm256_add_epi64(_mm256_set1_epi64x(from), _mm256_setr_epi64x(0, 1, 2, 3));
+  __m256 packed = _mm256_castsi256_ps(lanes_packed(mask, number));
+  __m128 low = _mm_shuffle_ps(_mm256_castps256_ps128(packed), _mm256_extractf128_ps(packed, 1),
+                              _MM_SHUFFLE(2, 0, 2, 0));
+  _mm_storeu_ps((float *)to, low);
+}
+
+#else
+enum { LANES = 1 };
+typedef double lanes;
+typedef bool lanes_mask;
+
+static inline lanes lanes_load(const double *x) { return *x; }
+static inline void lanes_store(double *x, lanes a) { *x = a; }
+static inline lanes lanes_of(double x) { return x; }
+static inline lanes lanes_sqrt(lanes a) { return sqrt(a); }
+static inline lanes lanes_truncate(lanes a) { return (double)(int)a; } // |a| < 2^31
+// 2^k of whole numbers -1022 <= k <= 1023.
+static inline lanes lanes_power_of_two(lanes k) {
+  uint64_t bits = (uint64_t)((int)k + 1023) << 52;
+  double x;
+  __builtin_memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+static inline lanes_mask lanes_less(lanes a, lanes b) { return a < b; }
+static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return a & b; }
+static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return a | b; }
+static inline lanes_mask lanes_first(int n) { return n > 0; } // of the lanes
+static inline int lanes_count(lanes_mask mask) { return mask; }
+
+// 0 where the mask is not set: there nothing is loaded, or stored.
+static inline lanes lanes_where(lanes_mask mask, lanes a) { return mask ? a : 0; }
+static inline lanes lanes_load_where(lanes_mask mask, const double *x) { return mask ? *x : 0; }
+static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
+  if (mask) *x = a;
+}
+// x[stride * index[l]] in lane l; up to LANES numbers are read, whatever the mask.
+static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
+                                 const uint32_t *index) {
+  return mask ? x[(size_t)stride * *index] : 0;
+}
+// Those where the mask is set, to x[0], x[1], ...; what is behind them, up to LANES, is lost.
+static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
+  (void)mask;
+  *x = a;
+}
+// The same of from, from + 1, ...
+static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
+  (void)mask;
+  *to = from;
+}
+#endif
+
+enum { SUM_PARTS = SUM_LANES / LANES };
+
+static inline double lanes_total(const lanes part[SUM_PARTS]) {
+  double lane[SUM_LANES];
+  for (int p = 0; p < SUM_PARTS; p++) lanes_store(lane + p * LANES, part[p]);
+  return sum_lanes(lane);
+}
+
+#endif
