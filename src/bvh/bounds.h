@@ -54,21 +54,25 @@ static inline double bounds_area(struct bounds b) {
   return x * y + y * z + z * x;
 }
 
-static inline void node_set(struct bvh_node *node, int side, struct bvh_child child,
-                            struct bounds box) {
-  node->child[side] = child;
+static inline void node_set_box(struct bvh_node *node, int slot, struct bounds box) {
   for (int k = 0; k < 3; k++) {
-    node->face[0][k][side] = box.lo[k];
-    node->face[1][k][side] = box.hi[k];
+    node->face[k][0][slot] = box.lo[k];
+    node->face[k][1][slot] = box.hi[k];
   }
 }
 
-static inline struct bounds node_bounds(const struct bvh_node *node, int side) {
+static inline struct bounds node_box(const struct bvh_node *node, int slot) {
   struct bounds box = bounds_empty();
   for (int k = 0; k < 3; k++) {
-    box.lo[k] = node->face[0][k][side];
-    box.hi[k] = node->face[1][k][side];
+    box.lo[k] = node->face[k][0][slot];
+    box.hi[k] = node->face[k][1][slot];
   }
+  return box;
+}
+
+static inline struct box bounds_box(struct bounds bounds) {
+  struct box box;
+  for (int k = 0; k < 3; k++) box.lo[k] = bounds.lo[k], box.hi[k] = bounds.hi[k];
   return box;
 }
 
@@ -81,6 +85,10 @@ struct bvh_ref {
 static inline float4 bounds_load(const float p[3]) {
   float4 v = {p[0], p[1], p[2], 0};
   return v;
+}
+
+static inline struct bounds bounds_of_box(const struct box *box) {
+  return (struct bounds){bounds_load(box->lo), bounds_load(box->hi)};
 }
 
 static inline struct bvh_ref ref_new(const struct box *box, uint32_t primitive, bool is_triangle) {

@@ -1,9 +1,8 @@
-// The tree over a scene's primitives, by binned SAH (split.c) on all threads.
-// A node, two boxes, costs NODE_COST, so a split costs NODE_COST + (area_left blocks_left +
-// area_right blocks_right) / area. A range that may be a leaf becomes one if that is not dearer.
+// The binary tree over a scene's primitives, by binned SAH (split.c) on all threads, down to single
+// primitives: what becomes of its nodes is chosen in collapse.c.
 // Large ranges are divided by all threads in chunks that are merged in order; what is left of them
-// are parts that one thread builds alone. Both sizes are constants, so the tree does not depend on
-// the number of threads.
+// one thread divides alone. Both sizes are constants, so the tree does not depend on the number of
+// threads.
 #include "bvh/build.h"
 
 #include "base/threads.h"
@@ -13,13 +12,10 @@
 #include <assert.h>
 #include <omp.h>
 
-// Measured on one core, rays per second: leaves of 2 to 8 and NODE_COST 0.5 to 1 differ by less
-// than 10 %.
 enum { LEAF_SIZE = 4 };
-static const double NODE_COST = 0.5;
 
-// Primitives. A part's refs stay in the second-level cache.
-enum { PART_SIZE = 1 << 14, NODES_AT_ONCE = 256 };
+// Primitives. Their refs stay in the second-level cache.
+enum { PART_SIZE = 1 << 14 };
 
 struct build {
   const struct scene *scene;
@@ -44,11 +40,6 @@ static struct extent extent_of(const struct bvh_ref *ref, uint32_t count) {
   struct extent extent = extent_empty();
   for (uint32_t i = 0; i < count; i++) extent_add_ref(&extent, &ref[i]);
   return extent;
-}
-
-static bool splits_pay(const struct range *range, const struct split *split) {
-  double area = bounds_area(range->extent.box);
-  return NODE_COST * area + split->cost < area * blocks_of(range->count);
 }
 
 // ---- a range on one thread ----
@@ -80,26 +71,25 @@ static uint32_t partition_triangles(struct bvh_ref *ref, uint32_t count) {
   return left;
 }
 
-// The size of the first half, or 0: a leaf, which has one kind of primitive.
+static enum bvh_kind kind_of(const struct bvh_ref *ref, uint32_t count) {
+  uint32_t triangles = 0;
+  for (uint32_t i = 0; i < count; i++) triangles += ref_is_triangle(&ref[i]);
+  return triangles == count ? BVH_TRIANGLES : triangles == 0 ? BVH_OTHERS : BVH_NODE;
+}
+
+// The size of the first half.
 static uint32_t divide(const struct build *b, const struct range *range, struct extent extent[2]) {
   struct bvh_ref *ref = range_refs(b, range);
-  uint32_t count = range->count, left;
-  if (count <= 1) return 0;
-  struct split split = {.cost = INFINITY};
-  struct binning binning = {0};
-  if (!b->flat && range->depth < BVH_SAH_DEPTH) {
+  uint32_t count = range->count, left = count / 2; // all centres are one, or deep enough
+  if (b->flat) {
+    left = partition_triangles(ref, count);
+  } else if (range->depth < BVH_SAH_DEPTH) {
     struct bins bins;
-    binning = split_binning(&range->extent.centers, count);
+    struct binning binning = split_binning(&range->extent.centers, count);
     split_fill(&binning, ref, count, &bins);
-    split = split_best(&binning, &bins);
+    struct split split = split_best(&binning, &bins);
+    if (split.cost < INFINITY) return partition(ref, count, &binning, &split, extent);
   }
-  bool may_be_leaf = b->flat || count <= b->leaf_size;
-  if (may_be_leaf && (b->flat || !splits_pay(range, &split)))
-    left = partition_triangles(ref, count) % count;
-  else if (split.cost < INFINITY)
-    return partition(ref, count, &binning, &split, extent);
-  else
-    left = count / 2; // all centres are one, or deep enough
   extent[0] = extent_of(ref, left);
   extent[1] = extent_of(ref + left, count - left);
   return left;
@@ -112,55 +102,31 @@ static void halves_of(const struct range *range, uint32_t left, int array,
   half[1] = (struct range){middle, range->count - left, depth, array, extent[1]};
 }
 
-static struct bvh_child child_new(uint32_t first, uint32_t count, enum bvh_kind kind) {
-  assert(count <= BVH_MAX_COUNT);
-  return (struct bvh_child){first, count & BVH_MAX_COUNT, kind};
+static struct binary *binary_new(const struct build *b, const struct range *range) {
+  struct binary *n = arena_new(own_arena(b), struct binary, 1);
+  n->box = range->extent.box, n->first = range->first, n->count = range->count;
+  return n;
 }
 
-static struct bvh_child leaf_new(const struct build *b, struct part *part,
-                                 const struct range *range) {
-  struct bvh_statistics *s = &part->statistics;
-  uint32_t count = range->count;
-  s->leaves++;
-  s->depth = range->depth > s->depth ? range->depth : s->depth;
-  if (count) s->sah_cost += bounds_area(range->extent.box) * blocks_of(count);
-  if (count && !ref_is_triangle(range_refs(b, range))) {
-    part->n_others += count;
-    return child_new(part->n_others - count, count, BVH_OTHERS);
-  }
-  part->n_blocks += blocks_of(count);
-  return child_new(part->n_blocks - blocks_of(count), count, BVH_TRIANGLES);
-}
-
-// One more node, where the others are: nothing else is taken from the arena meanwhile.
-static uint32_t node_new(struct part *part, struct arena *arena) {
-  if (part->n_nodes % NODES_AT_ONCE == 0)
-    part->node = arena_grow(arena, part->node, part->n_nodes, part->n_nodes + NODES_AT_ONCE,
-                            sizeof *part->node, alignof(struct bvh_node));
-  return part->n_nodes++;
-}
-
-static struct bvh_child range_build(const struct build *b, struct part *part, struct arena *arena,
-                                    const struct range *range) {
+static struct binary *range_build(const struct build *b, const struct range *range) {
+  struct binary *n = binary_new(b, range);
   struct extent extent[2];
   struct range half[2];
-  uint32_t left = divide(b, range, extent);
-  if (left == 0) return leaf_new(b, part, range);
-  halves_of(range, left, range->array, extent, half);
-  uint32_t number = node_new(part, arena);
-  part->statistics.sah_cost += bounds_area(range->extent.box) * NODE_COST;
-  for (int side = 0; side < 2; side++) {
-    struct bvh_child child = range_build(b, part, arena, &half[side]);
-    node_set(&part->node[number], side, child, half[side].extent.box);
+  n->kind = kind_of(range_refs(b, range), range->count);
+  if (range->count > 1 && !(b->flat && n->kind != BVH_NODE)) {
+    uint32_t left = divide(b, range, extent);
+    halves_of(range, left, range->array, extent, half);
+    for (int side = 0; side < 2; side++) n->half[side] = range_build(b, &half[side]);
   }
-  return child_new(number, 0, BVH_NODE);
+  binary_choose(n, b->leaf_size);
+  return n;
 }
 
-static void part_build_whole(const struct build *b, struct part *part, const struct range *range) {
-  part->first = range->first;
-  part->root = range_build(b, part, own_arena(b), range);
+static struct binary *whole_build(const struct build *b, const struct range *range) {
+  struct binary *n = range_build(b, range);
   const struct bvh_ref *ref = range_refs(b, range);
   for (uint32_t i = 0; i < range->count; i++) b->order[range->first + i] = ref_primitive(&ref[i]);
+  return n;
 }
 
 // ---- a large range on all threads ----
@@ -243,21 +209,19 @@ static void large_divide(const struct build *b, const struct range *range, struc
   halves_of(range, left, 1 - range->array, extent, half);
 }
 
-static struct part *part_build(const struct build *b, struct range range) {
-  struct part *part = arena_new(own_arena(b), struct part, 1);
-  part->box = range.extent.box;
-  if (!b->large || range.count <= b->part_size || range.count <= b->leaf_size) {
-    part_build_whole(b, part, &range);
-    return part;
-  }
+static struct binary *large_build(const struct build *b, struct range range) {
+  if (!b->large || range.count <= b->part_size) return whole_build(b, &range);
+  struct binary *n = binary_new(b, &range);
   struct range half[2];
   large_divide(b, &range, half);
-  part->statistics.sah_cost = bounds_area(part->box) * NODE_COST;
 #pragma omp task
-  part->half[0] = part_build(b, half[0]);
-  part->half[1] = part_build(b, half[1]);
+  n->half[0] = large_build(b, half[0]);
+  n->half[1] = large_build(b, half[1]);
 #pragma omp taskwait
-  return part;
+  bool same = n->half[0]->kind == n->half[1]->kind;
+  n->kind = same ? n->half[0]->kind : BVH_NODE;
+  binary_choose(n, b->leaf_size);
+  return n;
 }
 
 // ---- the whole ----
@@ -281,36 +245,39 @@ static struct range all_refs(const struct build *b, struct arena *scratch) {
   return all;
 }
 
-static struct part *all_parts(const struct build *b, struct range all) {
-  if (!b->large) return part_build(b, all);
-  struct part *root = NULL;
+static struct binary *all_build(const struct build *b, struct range all) {
+  if (!b->large) return large_build(b, all);
+  struct binary *root = NULL;
 #pragma omp parallel num_threads(b->n_threads)
 #pragma omp single
-  root = part_build(b, all);
+  root = large_build(b, all);
   return root;
 }
 
-static struct build build_new(const struct scene *scene, struct bvh_options options) {
-  uint32_t n = scene->n_primitives, leaf_size = (uint32_t)options.leaf_size,
-           part_size = options.part_size ? (uint32_t)options.part_size : PART_SIZE;
-  int threads = options.threads ? options.threads : threads_available();
-  return (struct build){.scene = scene,
-                        .leaf_size = leaf_size ? leaf_size : LEAF_SIZE,
-                        .part_size = part_size,
-                        .flat = n <= (leaf_size      ? leaf_size
-                                      : options.tree ? 0
-                                                     : SKIP_FEW_PRIMITIVES),
-                        .large = n > part_size && n > leaf_size,
-                        .n_threads = threads};
+static uint32_t leaf_size_of(const struct scene *scene, const struct bvh_options *options) {
+  if (options->leaf_size) return (uint32_t)options->leaf_size;
+  bool few = scene->n_primitives <= SKIP_FEW_PRIMITIVES;
+  return few && !options->tree ? SKIP_FEW_PRIMITIVES : LEAF_SIZE;
 }
 
-// The parts live in b->own, and the refs are gone when this returns.
-static struct part *build_parts(struct build *b) {
+static struct build build_new(const struct scene *scene, struct bvh_options options) {
+  uint32_t n = scene->n_primitives, leaf_size = leaf_size_of(scene, &options),
+           part_size = options.part_size ? (uint32_t)options.part_size : PART_SIZE;
+  return (struct build){.scene = scene,
+                        .leaf_size = leaf_size,
+                        .part_size = part_size,
+                        .flat = n <= leaf_size && !options.tree,
+                        .large = n > part_size && n > leaf_size,
+                        .n_threads = options.threads ? options.threads : threads_available()};
+}
+
+// The binary tree lives in b->own, and the refs are gone when this returns.
+static struct binary *build_binary(struct build *b) {
   struct arena reserve = arena_reserve(), scratch = reserve;
   for (int k = 0; k < 1 + b->large; k++)
     b->ref[k] = arena_new(&scratch, struct bvh_ref, b->scene->n_primitives);
   struct range all = all_refs(b, &scratch);
-  struct part *root = all_parts(b, all);
+  struct binary *root = all_build(b, all);
   arena_release(reserve);
   return root;
 }
@@ -324,10 +291,10 @@ struct bvh *bvh_build(const struct scene *scene, struct bvh_options options, str
   b.own = arena_new(&scratch, struct arena, n_own);
   struct arena *reserved = arena_new(&scratch, struct arena, n_own);
   for (int k = 0; k < n_own; k++) b.own[k] = reserved[k] = arena_reserve();
-  struct part *root = build_parts(&b);
+  const struct binary *root = build_binary(&b);
   struct bvh *bvh = arena_new(arena, struct bvh, 1);
   bvh->scene = scene;
-  part_place_all(bvh, root, b.order, arena, b.n_threads, scratch);
+  binary_collapse(root, b.order, bvh, arena, b.n_threads, scratch);
   for (int k = 0; k < n_own; k++) arena_release(reserved[k]);
   arena_release(reserve);
   return bvh;

@@ -1,5 +1,5 @@
-// A tree on its way: divided into parts that threads build on their own (build.c), then moved to
-// where it stays (place.c). What the parts are depends on the scene alone.
+// A binary tree on its way to a wide one: build.c divides, collapse.c chooses which of its nodes
+// stay.
 #ifndef BVH_BUILD_H
 #define BVH_BUILD_H
 
@@ -13,22 +13,22 @@ struct range {
   struct extent extent;
 };
 
-// Either divided in two halves, or whole: a subtree in nodes of its own. Until it is placed, its
-// children's rows are counted from its own first ones, and `count` of a leaf is primitives.
-struct part {
-  struct part *half[2]; // NULL: whole
+// A range, and what it costs as 1 ... BVH_WIDTH children of a node: see collapse.c.
+struct binary {
   struct bounds box;
-  struct bvh_node *node;
-  struct bvh_child root;
-  uint32_t first; // in the order of primitives
-  uint32_t n_nodes, n_blocks, n_others;
-  uint32_t at_node, at_block, at_other; // where it is placed
-  struct bvh_statistics statistics;
+  struct binary *half[2]; // NULL: not divided
+  uint32_t first, count;  // in the order of primitives
+  enum bvh_kind kind;     // of a leaf it may be, or BVH_NODE
+  double cost[BVH_WIDTH + 1];
+  unsigned char left[BVH_WIDTH + 1]; // how many children the first half gets; 0: as with one less
+  bool is_leaf;                      // as one child
 };
 
-// Gives the parts their places in the order of the tree and fills its arrays. bvh->statistics is
-// the sum over all parts.
-void part_place_all(struct bvh *, struct part *root, const uint32_t *order, struct arena *,
-                    int threads, struct arena scratch);
+// Fills cost, left and is_leaf from the halves. `leaf_size`: most primitives in a leaf.
+void binary_choose(struct binary *, uint32_t leaf_size);
+
+// The wide tree. order: the primitives.
+void binary_collapse(const struct binary *root, const uint32_t *order, struct bvh *,
+                     struct arena *arena, int threads, struct arena scratch);
 
 #endif

@@ -30,6 +30,16 @@ void bvh_closest(const struct bvh *, const struct ray *rays, struct hit *hits, i
 // blocked[j]: whether anything is hit within (0, t_max).
 void bvh_any(const struct bvh *, const struct ray *rays, unsigned char *blocked, int n);
 
+// Shadow rays: is anything in the way of a point at `distance` on the primitive `emitter` (or
+// PRIMITIVE_NONE)? hits[j] is
+// - nothing, where the closest hit is not nearer than the distance;
+// - the closest hit, where that is the emitter, nearer than the distance;
+// - else any hit nearer than the distance and, if the emitter is hit, before the emitter.
+// So whoever asks only whether the closest hit is nearer than the distance, and if it is the
+// emitter where, may ask this. The distance is not the rays' t_max, which counts as well.
+void bvh_blockers(const struct bvh *, const struct ray *rays, const double *distance,
+                  const uint32_t *emitter, struct hit *hits, int n);
+
 // The definition itself, without a tree: what both must equal.
 void bvh_closest_brute_force(const struct scene *, const struct ray *rays, struct hit *hits, int n);
 

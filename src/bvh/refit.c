@@ -13,25 +13,38 @@ void bvh_allocate(struct bvh *bvh, uint32_t n_nodes, uint32_t n_blocks, uint32_t
   bvh->other = arena_alloc(arena, n_others, sizeof *bvh->other, BVH_LINE);
 }
 
-static bool leaf_moves(const struct bvh *bvh, struct bvh_child leaf, const bool *moves) {
+static bool blocks_move(const struct bvh *bvh, const struct bvh_block *block, const bool *moves) {
   const uint32_t *shape_of = bvh->scene->shape_of;
-  for (uint32_t i = 0; i < leaf.count && leaf.kind == BVH_OTHERS; i++)
-    if (moves[shape_of[bvh->other[leaf.first + i].primitive]]) return true;
-  for (uint32_t i = 0; i < leaf.count && leaf.kind == BVH_TRIANGLES; i++)
-    for (int lane = 0; lane < LANES; lane++) {
-      uint32_t p = bvh->block[leaf.first + i].primitive[lane];
+  for (bool more = true; more; more = block++->more)
+    for (int lane = 0; lane < BVH_BLOCK; lane++) {
+      uint32_t p = block->primitive[lane];
       if (p != PRIMITIVE_NONE && moves[shape_of[p]]) return true;
     }
   return false;
 }
 
-static bool mark_moving(struct bvh *bvh, struct bvh_child child, const bool *moves) {
-  if (child.kind != BVH_NODE) return leaf_moves(bvh, child, moves);
+static bool others_move(const struct bvh *bvh, const struct bvh_other *other, const bool *moves) {
+  for (bool more = true; more; more = other++->more)
+    if (moves[bvh->scene->shape_of[other->primitive]]) return true;
+  return false;
+}
+
+static bool mark_moving(struct bvh *bvh, uint32_t child, const bool *moves) {
+  uint32_t row = bvh_row_of(child);
+  switch (bvh_kind_of(child)) {
+  case BVH_NOTHING:
+    return false;
+  case BVH_TRIANGLES:
+    return blocks_move(bvh, &bvh->block[row], moves);
+  case BVH_OTHERS:
+    return others_move(bvh, &bvh->other[row], moves);
+  case BVH_NODE:
+    break;
+  }
   unsigned char moving = 0;
-  for (int side = 0; side < 2; side++)
-    if (mark_moving(bvh, bvh->node[child.first].child[side], moves))
-      moving |= (unsigned char)(1 << side);
-  bvh->moving[child.first] = moving;
+  for (int slot = 0; slot < BVH_WIDTH; slot++)
+    if (mark_moving(bvh, bvh->node[row].child[slot], moves)) moving |= (unsigned char)(1 << slot);
+  bvh->moving[row] = moving;
   return moving != 0;
 }
 
@@ -52,43 +65,58 @@ struct bvh *bvh_clone(const struct bvh *bvh, const struct scene *scene, const bo
   return clone;
 }
 
-static struct bounds block_bounds(const struct bvh_block *block) {
-  struct bounds box = bounds_empty();
-  for (int lane = 0; lane < LANES; lane++)
-    for (int i = 0; i < 3 && block->primitive[lane] != PRIMITIVE_NONE; i++) {
-      const lanes_float *v = block->vertex[i];
-      bounds_add_point(&box, (float4){v[0][lane], v[1][lane], v[2][lane]});
+static void add_block(const struct bvh_block *block, struct bounds *all) {
+  for (int lane = 0; lane < BVH_BLOCK && block->primitive[lane] != PRIMITIVE_NONE; lane++)
+    for (int i = 0; i < 3; i++) {
+      const float(*v)[BVH_BLOCK] = block->vertex[i];
+      bounds_add_point(all, (float4){v[0][lane], v[1][lane], v[2][lane]});
     }
-  return box;
 }
 
-static struct bounds leaf_refit(struct bvh *bvh, struct bvh_child leaf) {
+static struct bounds blocks_refit(const struct bvh *bvh, struct bvh_block *block) {
   struct bounds all = bounds_empty();
-  for (uint32_t i = leaf.first; i < leaf.first + leaf.count; i++)
-    if (leaf.kind == BVH_TRIANGLES) {
-      uint32_t primitive[LANES], n = 0;
-      while (n < LANES && bvh->block[i].primitive[n] != PRIMITIVE_NONE)
-        primitive[n] = bvh->block[i].primitive[n], n++;
-      bvh_block_set(bvh->scene, &bvh->block[i], primitive, n);
-      bounds_add(&all, block_bounds(&bvh->block[i]));
-    } else {
-      bvh_other_set(bvh->scene, &bvh->other[i], bvh->other[i].primitive);
-      const struct box *box = &bvh->other[i].box;
-      bounds_add(&all, (struct bounds){bounds_load(box->lo), bounds_load(box->hi)});
-    }
-  return all;
-}
-
-static struct bounds child_refit(struct bvh *bvh, struct bvh_child child) {
-  if (child.kind != BVH_NODE) return leaf_refit(bvh, child);
-  struct bvh_node *node = &bvh->node[child.first];
-  struct bounds all = bounds_empty();
-  for (int side = 0; side < 2; side++) {
-    if (!bvh->moving || bvh->moving[child.first] & 1 << side)
-      node_set(node, side, node->child[side], child_refit(bvh, node->child[side]));
-    bounds_add(&all, node_bounds(node, side));
+  for (bool more = true; more; more = block++->more) {
+    bvh_block_update(bvh->scene, block);
+    add_block(block, &all);
   }
   return all;
 }
 
-void bvh_refit(struct bvh *bvh) { child_refit(bvh, bvh->root); }
+static struct bounds others_refit(const struct bvh *bvh, struct bvh_other *other) {
+  struct bounds all = bounds_empty();
+  for (bool more = true; more; more = other++->more) {
+    bvh_other_update(bvh->scene, other);
+    bounds_add(&all, bounds_of_box(&other->box));
+  }
+  return all;
+}
+
+static struct bounds child_refit(struct bvh *bvh, uint32_t child);
+
+static struct bounds node_refit(struct bvh *bvh, uint32_t row) {
+  struct bvh_node *node = &bvh->node[row];
+  struct bounds all = bounds_empty();
+  for (int slot = 0; slot < BVH_WIDTH; slot++) {
+    if (!bvh->moving || bvh->moving[row] & 1 << slot)
+      node_set_box(node, slot, child_refit(bvh, node->child[slot]));
+    bounds_add(&all, node_box(node, slot));
+  }
+  return all;
+}
+
+static struct bounds child_refit(struct bvh *bvh, uint32_t child) {
+  uint32_t row = bvh_row_of(child);
+  switch (bvh_kind_of(child)) {
+  case BVH_NODE:
+    return node_refit(bvh, row);
+  case BVH_TRIANGLES:
+    return blocks_refit(bvh, &bvh->block[row]);
+  case BVH_OTHERS:
+    return others_refit(bvh, &bvh->other[row]);
+  case BVH_NOTHING:
+    break;
+  }
+  return bounds_empty();
+}
+
+void bvh_refit(struct bvh *bvh) { bvh->box = bounds_box(child_refit(bvh, bvh->root)); }

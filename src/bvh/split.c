@@ -1,5 +1,5 @@
 // Binned SAH (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
-// The unit of cost is the test of a block of LANES triangles, whether full or not.
+// The unit of cost is the test of a block of BVH_BLOCK triangles, whether full or not.
 #include "bvh/split.h"
 
 // Few primitives need few bins: most ranges are small, and what they cost is mostly the bins.
@@ -53,7 +53,7 @@ static void best_of_axis(const struct bins *bins, int n, int axis, struct split 
     if (bins->count[axis][i] == 0) continue;
     bounds_add(&box, bins->box[axis][i]);
     count += bins->count[axis][i];
-    left_cost[i + 1] = bounds_area(box) * blocks_of(count);
+    left_cost[i + 1] = bounds_area(box) * bvh_blocks_of(count);
   }
   struct split split = {INFINITY, axis, 0};
   box = bounds_empty(), count = 0;
@@ -61,7 +61,7 @@ static void best_of_axis(const struct bins *bins, int n, int axis, struct split 
     if (bins->count[axis][i] == 0) continue;
     bounds_add(&box, bins->box[axis][i]);
     count += bins->count[axis][i];
-    double cost = left_cost[i] + bounds_area(box) * blocks_of(count);
+    double cost = left_cost[i] + bounds_area(box) * bvh_blocks_of(count);
     if (cost <= split.cost) split.cost = cost, split.bin = i;
   }
   if (split.cost < best->cost) *best = split;

@@ -3,7 +3,6 @@
 #define BVH_SPLIT_H
 
 #include "bvh/bounds.h"
-#include "bvh/lanes.h"
 
 enum { BVH_MAX_BINS = 32 };
 
@@ -41,9 +40,6 @@ struct split {
   double cost;   // of the children, in block tests times area; INFINITY: there is none
   int axis, bin; // the first bin of the right side
 };
-
-// The primitives a leaf of `count` takes are tested LANES at a time.
-static inline uint32_t blocks_of(uint32_t count) { return count / LANES + (count % LANES != 0); }
 
 struct binning split_binning(const struct bounds *centers, uint32_t count);
 
