@@ -34,6 +34,7 @@ struct bsdf_sample {
 };
 
 struct bsdf_type {
+  bool lambert; // f = x / pi where wo and wi are on one side, sampled by the cosine
   // f(wo, wi) in 1/sr per channel, without delta lobes; wo.z and wi.z are not 0.
   void (*value)(const struct bsdf *, struct vec wo, struct vec wi, enum transport, double f[3]);
   // value depends on the sides of wo and wi alone.

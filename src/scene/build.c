@@ -78,13 +78,35 @@ static void finish_shape(struct scene *scene, struct shape *shape) {
       shape->normal != ROW_NONE || shape->alpha || (material->needs & MATERIAL_DETAIL);
 }
 
+// What every point of a shape has in common is worked out once. Shapes that move are left out.
+static void fill_constants(struct scene *scene, struct shape *shape, struct arena *arena) {
+  const struct material *material = &scene->material[shape->material];
+  bool faceted = shape->type->flat && shape->normal == ROW_NONE;
+  for (uint32_t k = shape->first; faceted && k < shape->first + shape->count; k++)
+    scene->facet[k] = shape->type->normal(scene, shape, k, vec(0, 0, 0));
+  shape->faceted = faceted;
+  if (shape->detailed || material->needs & MATERIAL_RANDOM || material->type->passed) return;
+  struct bsdf *bsdf = arena_new(arena, struct bsdf, 1);
+  struct surface surface = {.primitive = shape->first, .shape = (uint32_t)(shape - scene->shape)};
+  material->type->bsdf(scene, material, &surface, bsdf);
+  shape->bsdf = bsdf;
+}
+
+static bool moves(const struct scene *scene, uint32_t shape) {
+  for (uint32_t k = 0; k < scene->n_motions; k++)
+    if (shape - scene->motion[k].shape < scene->motion[k].n_shapes) return true;
+  return false;
+}
+
 static void fill_tables(struct scene_builder *builder) {
   struct scene *scene = builder->scene;
   scene->shape_of = arena_new(builder->arena, uint32_t, scene->n_primitives);
+  scene->facet = arena_new(builder->arena, struct vec, scene->n_primitives);
   scene->bounds = box_empty();
   for (uint32_t s = 0; s < scene->n_shapes; s++) {
     struct shape *shape = &scene->shape[s];
     finish_shape(scene, shape);
+    if (!moves(scene, s)) fill_constants(scene, shape, builder->arena);
     for (uint32_t k = shape->first; k < shape->first + shape->count; k++) {
       scene->shape_of[k] = s;
       scene->bounds = box_union(scene->bounds, shape->type->bounds(scene, shape, k));

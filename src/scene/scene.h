@@ -55,6 +55,8 @@ struct shape {
   bool flip;                  // geometric normal reversed (ReverseOrientation xor mirrored matrix)
   bool detailed;              // somebody wants ns, dpdu, uv
   bool see_through;           // a ray may pass: alpha, or a material that is an interface
+  bool faceted;               // a normal of its own for each primitive, in scene.facet
+  const struct bsdf *bsdf;    // of every point, but for the frame; NULL: it depends on the point
   uint32_t inside, outside;   // rows of scene.medium or MEDIUM_NONE, behind and before ng; where they
                               // differ, what crosses the shape changes its medium
 };
@@ -274,6 +276,7 @@ struct scene {
   struct quadric *quadric;
   struct shape *shape;
   uint32_t *shape_of;      // by primitive
+  struct vec *facet;       // by primitive: ng where shape.faceted
   struct material *material;
   struct light *light;
   struct medium *medium;

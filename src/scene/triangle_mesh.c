@@ -58,6 +58,7 @@ static struct vec interpolated_normal(const struct scene *scene, const struct sh
 
 struct vec triangle_normal(const struct scene *scene, const struct shape *shape, uint32_t primitive,
                            struct vec p) {
+  if (shape->faceted) return scene->facet[primitive];
   float vertex[3][3];
   triangle_gather(scene, shape, primitive, vertex);
   struct vec n = triangle_cross(vertex);

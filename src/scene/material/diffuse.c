@@ -46,7 +46,7 @@ static bool sample(const struct bsdf *bsdf, struct vec wo, const double u[3],
 }
 
 static const struct bsdf_type lambert = {
-    .value = value, .by_side = true, .pdf = pdf, .sample = sample};
+    .lambert = true, .by_side = true, .value = value, .pdf = pdf, .sample = sample};
 
 static void bsdf(const struct scene *scene, const struct material *material,
                  const struct surface *surface, struct bsdf *out) {
