@@ -167,7 +167,7 @@ $(call object,$(plain_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_b
 define lanes_rule
 $(lanes_sources:%.lanes.c=$(out)/obj/%.$1.o): $(out)/obj/%.$1.o: %.lanes.c $(gen)/flags | $(packages_build)
 	@mkdir -p $$(@D)
-	$$(call quiet,CC,$$<)$$(CC) $$(CPPFLAGS) $$(CFLAGS) $(LANES.$1) -DLEVEL=$1 -MMD -MP -c $$< -o $$@
+	$$(call quiet,CC,$$<)$$(CC) $$(CPPFLAGS) $$(CFLAGS) $(LANES.$1) -DLEVEL=$1 -Wno-psabi -MMD -MP -c $$< -o $$@
 endef
 $(foreach level,$(levels),$(eval $(call lanes_rule,$(level))))
 

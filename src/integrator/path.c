@@ -92,7 +92,8 @@ static bool meet_surface(const struct path *state, int j, bool last, double *fra
   struct connection from = {.bsdf = &bsdf, .p = surface.p, .primitive = surface.primitive};
   for (int c = 0; c < walk->n_channels; c++) from.weight[c] = walk->throughput[c][j];
   connect(state, j, &from);
-  return walk_scatter(walk, j, &surface, &bsdf);
+  return walk_facet(walk, j) >= 0 ? walk_scatter_facet(walk, j)
+                                  : walk_scatter(walk, j, &surface, &bsdf);
 }
 
 // The same in a medium, whose emission next-event estimation does not look for.
@@ -124,6 +125,7 @@ static void meet(const struct path *state, double *frame) {
   }
   connect_begin(walk);
   for (int j = 0; j < walk->n; j++) {
+    if (!last && j % FACETS == 0) walk_sample_facets(walk, j);
     bool on = walk_collided(walk, j) ? meet_medium(state, j, last, frame)
                                      : meet_surface(state, j, last, frame);
     if (on && !light_path_ends(walk->kind[j], state->measure->left_out))

@@ -2,7 +2,6 @@
 // what is in the high half is never used.
 #include "numeric/rng_level.h"
 
-#include <string.h>
 
 #if defined __AVX512F__ || defined __AVX2__
 #include <immintrin.h>
@@ -29,7 +28,7 @@ static int fill(struct rng_key key, uint64_t iteration, const uint64_t *path, in
   for (; done + BLOCK <= n; done += BLOCK) {
     lanes c[VECTORS][4];
     for (int v = 0; v < VECTORS; v++) {
-      memcpy(&c[v][1], path + done + v * WIDTH, sizeof c[v][1]);
+      __builtin_memcpy(&c[v][1], path + done + v * WIDTH, sizeof c[v][1]);
       c[v][0] = zero + pair;
       c[v][2] = c[v][1] >> 32 | (zero + ((iteration & 0xffff) << 16));
       c[v][3] = zero + (iteration >> 16);
@@ -52,7 +51,7 @@ static int fill(struct rng_key key, uint64_t iteration, const uint64_t *path, in
         lanes_double a = (lanes_double)(bits >> 32 | (zero + 0x4530000000000000));
         lanes_double b = (lanes_double)((bits & low) | (zero + 0x4330000000000000));
         lanes_double x = ((a - (0x1p84 + 0x1p52)) + b) * 0x1p-53;
-        memcpy((u == 0 ? u0 : u1) + done + v * WIDTH, &x, sizeof x);
+        __builtin_memcpy((u == 0 ? u0 : u1) + done + v * WIDTH, &x, sizeof x);
       }
   }
   return done;

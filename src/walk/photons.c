@@ -94,13 +94,17 @@ static inline int64_t store(const struct walk *walk, int j, const struct pass *p
   return at;
 }
 
-static void store_on_surface(const struct walk *walk, int j, const struct pass *pass,
-                             const struct surface *surface, const struct bsdf *bsdf) {
+static void store_at(const struct walk *walk, int j, const struct pass *pass, struct vec p) {
   const struct photon_sink *sink = &pass->to->surface;
-  if (!is_gathered(walk->scene, surface, bsdf, vec_scale(walk->ray[j].d, -1))) return;
-  int64_t at = store(walk, j, pass, sink, surface->p);
+  int64_t at = store(walk, j, pass, sink, p);
   if (at < 0) return;
   for (int c = 0; c < walk->n_channels; c++) sink->photons->flux[c][at] = walk->throughput[c][j];
+}
+
+static void store_on_surface(const struct walk *walk, int j, const struct pass *pass,
+                             const struct surface *surface, const struct bsdf *bsdf) {
+  if (is_gathered(walk->scene, surface, bsdf, vec_scale(walk->ray[j].d, -1)))
+    store_at(walk, j, pass, surface->p);
 }
 
 // A surface of opacity a stops the fraction a of the photons, and an eye path with probability a,
@@ -124,6 +128,22 @@ static void store_in_medium(const struct walk *walk, int j, const struct pass *p
     sink->photons->flux[c][at] = walk->collision[j].weight[c];
 }
 
+// True: the path goes on.
+static bool meet_one(struct walk *walk, int j, const struct pass *pass, bool last) {
+  if (walk_collided(walk, j)) {
+    store_in_medium(walk, j, pass);
+    return !last && walk_scatter_in_medium(walk, j);
+  }
+  if (walk_facet(walk, j) >= 0) {
+    store_at(walk, j, pass, vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t));
+    return !last && walk_scatter_facet(walk, j);
+  }
+  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  store_on_surface(walk, j, pass, &surface, &bsdf);
+  return !last && bsdf.type && walk_scatter(walk, j, &surface, &bsdf);
+}
+
 // At every vertex: store what can scatter towards an eye, then scatter.
 static void meet(struct walk *walk, const struct pass *pass) {
   bool last = walk->vertex + 1 >= pass->of->depth && !pass->of->past_last;
@@ -132,15 +152,8 @@ static void meet(struct walk *walk, const struct pass *pass) {
   photons_reserve(pass->to->surface.photons, walk->n, pass->arena);
   if (pass->to->volume.photons) photons_reserve(pass->to->volume.photons, walk->n, pass->arena);
   for (int j = 0; j < walk->n; j++) {
-    if (walk_collided(walk, j)) {
-      store_in_medium(walk, j, pass);
-      if (!last && walk_scatter_in_medium(walk, j)) walk_move(walk, alive++, j);
-      continue;
-    }
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
-    store_on_surface(walk, j, pass, &surface, &bsdf);
-    if (!last && bsdf.type && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
+    if (j % FACETS == 0) walk_sample_facets(walk, j);
+    if (meet_one(walk, j, pass, last)) walk_move(walk, alive++, j);
   }
   walk->n = alive;
 }

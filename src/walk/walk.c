@@ -1,6 +1,7 @@
 #include "walk/walk.h"
 
 #include "walk/dimension.h"
+#include "walk/facets_level.h"
 #include "walk/flight.h"
 
 static struct shadow shadow_new(int n_channels, struct arena *arena) {
@@ -205,6 +206,52 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
     walk->medium[j] = surface_medium(walk->scene, surface, sample.wi, walk->medium[j]);
   walk->pdf[j] = sample.pdf;
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], sample.pdf == 0);
+  return true;
+}
+
+// ---- facets ----
+static const struct shape *shape_hit(const struct walk *walk, int j) {
+  return &walk->scene->shape[walk->scene->shape_of[walk->hit[j].primitive]];
+}
+
+// Differentials need more of a surface than its normal, and a bsdf of it.
+static bool hits_facet(const struct walk *walk, int j) {
+  if (walk->hit[j].primitive == PRIMITIVE_NONE || walk->differential) return false;
+  const struct shape *shape = shape_hit(walk, j);
+  return shape->faceted && shape->bsdf && shape->bsdf->type && shape->bsdf->type->lambert &&
+         shape->inside == shape->outside;
+}
+
+void walk_sample_facets(struct walk *walk, int first) {
+  struct facets *facets = &walk->block.facets;
+  int n = 0, count = walk->n - first < FACETS ? walk->n - first : FACETS;
+  walk->block.first = first;
+  for (int k = 0; k < count; k++) {
+    int j = first + k;
+    walk->block.row[k] = -1;
+    if (!hits_facet(walk, j)) continue;
+    const struct vec *d = &walk->ray[j].d, *ng = &walk->scene->facet[walk->hit[j].primitive];
+    facets->d[0][n] = d->x, facets->d[1][n] = d->y, facets->d[2][n] = d->z;
+    facets->n[0][n] = ng->x, facets->n[1][n] = ng->y, facets->n[2][n] = ng->z;
+    facets->u[0][n] = walk->u[0][0][j], facets->u[1][n] = walk->u[0][1][j];
+    walk->block.row[k] = (int8_t)n++;
+  }
+  LEVEL_TABLE(facets_level)->sample(facets, n);
+}
+
+bool walk_scatter_facet(struct walk *walk, int j) {
+  const struct facets *facets = &walk->block.facets;
+  int row = walk_facet(walk, j);
+  const double *albedo = shape_hit(walk, j)->bsdf->x;
+  double survive = walk_largest(albedo, walk->n_channels);
+  if (facets->cosine[row] == 0 || !(walk->u[1][1][j] < survive)) return false;
+  double divisor = survive < 1 ? survive : 1;
+  for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= albedo[c] / divisor;
+  struct vec wi = {facets->wi[0][row], facets->wi[1][row], facets->wi[2][row]};
+  struct vec p = vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t);
+  walk_start(walk, j, (struct ray){p, wi, INFINITY, walk->hit[j].primitive});
+  walk->pdf[j] = facets->pdf[row];
+  walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);
   return true;
 }
 

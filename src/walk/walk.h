@@ -8,6 +8,7 @@
 #include "numeric/rng.h"
 #include "scene/scene.h"
 #include "walk/differential.h"
+#include "walk/facets.h"
 #include "walk/light_path.h"
 
 enum { WALK_BATCH = 4096 };
@@ -55,7 +56,12 @@ struct walk {
   void *through_data;
 
   double *u[4][2]; // scratch: pairs of random numbers
-  struct shadow {  // scratch of connect_lights, [WALK_BATCH] each
+  struct {         // scratch of walk_sample_facets
+    int first;
+    int8_t row[FACETS]; // of the block's paths in `facets`; -1: the path has hit something else
+    struct facets facets;
+  } block;
+  struct shadow { // scratch of connect_lights, [WALK_BATCH] each
     struct ray *ray;
     struct hit *hit;
     double *distance, *value[3];
@@ -140,6 +146,18 @@ void walk_move(struct walk *, int to, int from);
 // with the largest channel of the weight, the scaling of radiance by refraction left out.
 // False: absorbed. True: ray, from, throughput, pdf and kind are those of the next segment.
 bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsdf *);
+
+// Where up to FACETS paths from `first` on, those that have hit Lambertian facets, are scattered
+// to: u[0] (direction) of each.
+void walk_sample_facets(struct walk *, int first);
+
+// Of a path of the block: the row of its facet; -1: it has hit something else.
+static inline int walk_facet(const struct walk *walk, int j) {
+  return walk->block.row[j - walk->block.first];
+}
+
+// walk_scatter of path j that has hit a facet.
+bool walk_scatter_facet(struct walk *, int j);
 
 // The same where path j has collided; roulette survives with the largest channel of the albedo.
 bool walk_scatter_in_medium(struct walk *, int j);
