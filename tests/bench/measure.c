@@ -27,9 +27,8 @@ struct measurement measure_of(const struct bench_scene *scene, bool nee) {
                               .threads = 1};
 }
 
-// A law the integrator takes.
-static void set_law(struct measurement *measure, const struct integrator_type *integrator,
-                    struct arena *arena) {
+void measure_set_law(struct measurement *measure, const struct integrator_type *integrator,
+                     struct arena *arena) {
   if (!integrator->law) return;
   struct estimator *own = arena_new(arena, struct estimator, measure->n_estimators);
   memcpy(own, measure->estimator, (size_t)measure->n_estimators * sizeof *own);
@@ -40,7 +39,7 @@ static void set_law(struct measurement *measure, const struct integrator_type *i
 struct steps *steps_new(const char *integrator, struct measurement measure, struct arena *arena) {
   struct steps *steps = arena_new(arena, struct steps, 1);
   *steps = (struct steps){.integrator = integrator_find(integrator), .next = 1, .each = 1};
-  set_law(&measure, steps->integrator, arena);
+  measure_set_law(&measure, steps->integrator, arena);
   steps->measure = measure;
   steps->size = (long)measure.n_points * measure.features.n_channels * measure.n_estimators;
   steps->frame = arena_new(arena, double, steps->size);

@@ -11,6 +11,8 @@ enum { PHOTONS = 65536, DEPTH = 64 };
 
 // By the estimator at alpha = 2/3 with a box.
 struct measurement measure_of(const struct bench_scene *, bool nee);
+// With a law the integrator takes.
+void measure_set_law(struct measurement *, const struct integrator_type *, struct arena *);
 
 // An integrator at work: iterations i = next, next + 1, ...
 struct steps {

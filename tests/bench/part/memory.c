@@ -20,7 +20,8 @@ static struct pixel *film(struct scene *scene, int n, struct arena *arena) {
 }
 
 // `photonlab render` of n x n pixels, in a process of its own: the most it had resident, bytes.
-static double resident(const struct bench_scene *scene, const char *integrator, int n) {
+static double resident(const struct bench_scene *scene, const char *integrator, int channels,
+                       int n) {
   struct rusage usage;
   pid_t child = fork();
   if (child < 0) die("bench: cannot start a process");
@@ -36,22 +37,31 @@ static double resident(const struct bench_scene *scene, const char *integrator, 
   measure.scene = &own;
   measure.pixel = film(&own, n, &arena);
   measure.n_points = n * n;
-  struct steps *steps = steps_new(integrator, measure, &arena);
+  measure.features.n_channels = channels;
+  const struct integrator_type *type = integrator_find(integrator);
+  measure_set_law(&measure, type, &arena);
   struct run_options options = {.threads = 1, .quiet = true};
-  _exit(!render_image(steps->integrator, &steps->measure, ITERATIONS, options, &arena, &image));
+  _exit(!render_image(type, &measure, ITERATIONS, options, &arena, &image));
+}
+
+// The scene is gray; of three channels as a coloured one is.
+static void add(struct bench *bench, const char *integrator, int channels) {
+  const char *name =
+      arena_format(bench->arena, "%s/%s", integrator, channels == 1 ? "gray" : "coloured");
+  if (!bench_wants(bench, "memory", name)) return;
+  const struct bench_scene *scene = bench_scene(bench, "box");
+  double more =
+      resident(scene, integrator, channels, LARGE) - resident(scene, integrator, channels, SMALL);
+  bench_add(bench, "memory",
+            (struct row){.name = name,
+                         .kind = COUNT,
+                         .unit = "B/pixel",
+                         .work = more / (LARGE * LARGE - SMALL * SMALL)});
 }
 
 static void rows(struct bench *bench) {
-  const struct bench_scene *scene = bench_scene(bench, "box");
-  for (size_t k = 0; k < sizeof integrators / sizeof integrators[0]; k++) {
-    if (!bench_wants(bench, "memory", integrators[k])) continue;
-    double more = resident(scene, integrators[k], LARGE) - resident(scene, integrators[k], SMALL);
-    bench_add(bench, "memory",
-              (struct row){.name = integrators[k],
-                           .kind = COUNT,
-                           .unit = "B/pixel",
-                           .work = more / (LARGE * LARGE - SMALL * SMALL)});
-  }
+  for (size_t k = 0; k < sizeof integrators / sizeof integrators[0]; k++)
+    for (int channels = 1; channels <= 3; channels += 2) add(bench, integrators[k], channels);
 }
 
 const struct part_type part_memory = {

@@ -1,23 +1,24 @@
 #define _DEFAULT_SOURCE // fork
 #include "tests/bench/measure.h"
 
+#include "base/file.h"
 #include "base/problem.h"
+#include "tests/bench/trial.h"
 
-#include <omp.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-// Two iterations by two threads, or by two processes that share nothing but the machine.
+// Four runs of four iterations, of the measurement that the iteration parts time.
+static const char experiment[] = "scene: scenes/cornell-box.pbrt\nintegrator: probabilistic\n"
+                                 "radius: 0.05\nphotons: 65536\ndirect: nee\n"
+                                 "iterations: 4\nruns: 4\n";
+enum { ITERATIONS = 16 };
+
+// The same experiment by two processes that share nothing but the machine.
 struct pair {
-  struct steps *steps[2];
+  struct trial *trial[2];
   int ask, answer; // pipes of the other process
 };
-
-static void by_threads(void *data, int repetition) {
-  struct pair *pair = data;
-#pragma omp parallel for num_threads(2) schedule(static, 1)
-  for (int t = 0; t < 2; t++) steps_run(pair->steps[t], repetition);
-}
 
 static void say(int to) {
   if (write(to, "", 1) != 1) die("bench: the other process is gone");
@@ -31,11 +32,11 @@ static bool hear(int from) {
 static void by_processes(void *data, int repetition) {
   struct pair *pair = data;
   say(pair->ask);
-  steps_run(pair->steps[0], repetition);
+  trial_run(pair->trial[0], repetition);
   if (!hear(pair->answer)) die("bench: the other process is gone");
 }
 
-// A process that runs the steps whenever it is asked, until nobody can ask.
+// A process that runs the experiment whenever it is asked, until nobody can ask.
 static void start_process(struct pair *pair) {
   int ask[2], answer[2];
   if (pipe(ask) || pipe(answer)) die("bench: no pipe");
@@ -48,21 +49,32 @@ static void start_process(struct pair *pair) {
   }
   close(ask[1]), close(answer[0]);
   while (hear(ask[0])) {
-    steps_run(pair->steps[1], 0);
+    trial_run(pair->trial[1], 0);
     say(answer[1]);
   }
   _exit(0);
 }
 
-static struct pair *pair_new(const struct bench_scene *scene, struct arena *arena) {
-  struct pair *pair = arena_new(arena, struct pair, 1);
-  for (int t = 0; t < 2; t++)
-    pair->steps[t] = steps_new("probabilistic", measure_of(scene, true), arena);
-  return pair;
+static void write_experiment(struct bench *bench, const char *path) {
+  struct problem problem = {{0}};
+  struct file_out out;
+  if (!file_make_directory(bench->folder, &problem) || !file_begin(&out, path, &problem))
+    die("%s", problem.text);
+  fputs(experiment, out.stream);
+  if (!file_commit(&out, &problem)) die("%s", problem.text);
+}
+
+static struct trial *trial_of(struct bench *bench, const char *name, int threads) {
+  const char *path = arena_format(bench->arena, "%s/threads.yaml", bench->folder);
+  write_experiment(bench, path);
+  struct trial *trial =
+      trial_new(bench, path, "default", arena_format(bench->arena, "threads/%s", name));
+  trial->options.threads = threads;
+  return trial;
 }
 
 static void add(struct bench *bench, const char *name, const char *base, double iterations,
-                int threads, void (*body)(void *, int), void *data) {
+                void (*body)(void *, int), void *data) {
   bench_add(bench, "threads",
             (struct row){.name = name,
                          .kind = RATE,
@@ -71,27 +83,33 @@ static void add(struct bench *bench, const char *name, const char *base, double 
                          .body = body,
                          .data = data,
                          .base = base,
-                         .threads = threads});
+                         .threads = 2});
+}
+
+static void add_experiments(struct bench *bench) {
+  struct pair *pair = arena_new(bench->arena, struct pair, 1);
+  struct trial *one = trial_of(bench, "one", 1), *two = trial_of(bench, "two", 2);
+  pair->trial[0] = trial_of(bench, "here", 1);
+  pair->trial[1] = trial_of(bench, "there", 1);
+  start_process(pair); // before there are threads
+  trial_check_same(one, two, false);
+  add(bench, "experiment-1", NULL, ITERATIONS, trial_run, one);
+  add(bench, "experiment-2", "experiment-1", ITERATIONS, trial_run, two);
+  add(bench, "processes-2", "experiment-1", 2 * ITERATIONS, by_processes, pair);
 }
 
 static void rows(struct bench *bench) {
-  const struct bench_scene *scene = bench_scene(bench, "box");
-  struct measurement measure = measure_of(scene, true);
-  struct pair *processes = pair_new(scene, bench->arena), *threads = pair_new(scene, bench->arena);
-  start_process(processes); // before there are threads
+  add_experiments(bench);
+  struct measurement measure = measure_of(bench_scene(bench, "box"), true);
   struct steps *one = steps_new("sppm", measure, bench->arena);
   steps_check(one, 2, "one-iteration");
-  steps_check(threads->steps[0], 1, "independent");
   measure.threads = 2;
   struct steps *two = steps_new("sppm", measure, bench->arena);
-  add(bench, "one-iteration-1", NULL, 1, 2, steps_run, one);
-  add(bench, "one-iteration-2", "one-iteration-1", 1, 2, steps_run, two);
-  add(bench, "independent-1", NULL, 1, 2, steps_run,
-      steps_new("probabilistic", measure_of(scene, true), bench->arena));
-  add(bench, "independent-2", "independent-1", 2, 2, by_threads, threads);
-  add(bench, "processes-2", "independent-1", 2, 2, by_processes, processes);
+  add(bench, "one-iteration-1", NULL, 1, steps_run, one);
+  add(bench, "one-iteration-2", "one-iteration-1", 1, steps_run, two);
 }
 
 const struct part_type part_threads = {
-    "threads", "wall time of one thread and two: within sppm's iteration, and side by side", 7,
-    rows};
+    "threads",
+    "wall time of an experiment of four runs, and of sppm's iteration, by one and by two threads",
+    7, rows};
