@@ -110,9 +110,9 @@ static const struct option options[] = {
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
 static const struct command *const commands[] = {
-    &command_predict, &command_plan,   &command_run,     &command_fit,
-    &command_plot,    &command_render, &command_compare, &command_reference,
-    &command_info,    &command_list,   &command_validate};
+    &command_predict,   &command_plan,   &command_run,     &command_fit,
+    &command_plot,      &command_render, &command_compare, &command_efficiency,
+    &command_reference, &command_info,   &command_list,    &command_validate};
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 // ---- help ----
@@ -133,7 +133,7 @@ static void print_help(void) {
   printf("photonlab measures how progressive photon mapping converges.\n\nusage: photonlab COMMAND "
          "...\n\n");
   for (int k = 0; k < N_COMMANDS; k++)
-    printf("  %-9s %-12s %s\n", commands[k]->name,
+    printf("  %-10s %-12s %s\n", commands[k]->name,
            commands[k]->argument ? commands[k]->argument : "", commands[k]->about);
   printf(
       "\nphotonlab COMMAND --help lists a command's options; photonlab --version the version.\n");

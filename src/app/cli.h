@@ -45,6 +45,6 @@ int cli_main(int argc, char **argv);
 
 extern const struct command command_predict, command_plan, command_run, command_fit, command_plot,
     command_render, command_info, command_reference, command_compare, command_list,
-    command_validate;
+    command_validate, command_efficiency;
 
 #endif
