@@ -17,29 +17,33 @@
 // Rays and scenes so large or small that float could overflow are left to search_one.
 #include "bvh/search.h"
 
+#include <string.h>
+
 #ifdef __AVX2__
 #include <immintrin.h>
 
 // Measured on one core: 16 to 64 rays in flight.
-enum { POOL = 48, MOST_WAITING = 256 };
-enum { QUEUE_HITS = BVH_NOTHING + 1, QUEUES };
+enum { POOL = 48, AHEAD = 8, MOST_WAITING = 256 };
+enum { QUEUE_HITS = BVH_NOTHING + 1, QUEUE_ODD, QUEUES };
+enum { BLOCK_FLOATS = sizeof(struct bvh_block) / sizeof(float) };
 
 static const double LARGEST = 0x1p60, SMALLEST = 0x1p-60;
 
 struct slot {
   float near_o[4], near_scale[4], far_o[4], far_scale[4];
-  double o[3], along_x, along_y; // of the shear, in its order of axes
-  uint32_t axis[3];              // of the shear: bytes from a corner's first coordinate
-  float limit;                   // best t
-  int n;                         // waiting
-  uint32_t row;                  // where it is
-  uint32_t enter[3];             // bytes from a node to the faces by which an axis is entered
-  uint32_t octant;
-  double cone_o[4], cone_near[4], cone_far[4]; // of clip.h
-  bool parallel;                               // any axis
+  double shear_o[3], along_x, along_y; // in the shear's order of axes
+  uint32_t axis[3];                    // of the shear: bytes from a corner's first coordinate
+  float limit;                         // best t
+  uint32_t n;                          // waiting
+  uint32_t row;                        // where it is
+  uint32_t enter[4]; // bytes from a node to the faces by which an axis is entered, to its order
   struct search search;
   int j;
-  int accepted;                                // triangles of the block
+  uint32_t accepted; // triangles of the block
+  int64_t left;      // floats from the first block to the triangle that is left; or -1
+  bool odd;          // a hit of this ray is looked at by search_triangle
+  _Alignas(BVH_LINE) double o[4];
+  double d[4], near[4], far[4];                // of clip.h; d[3]: t_max
   float waiting_near[MOST_WAITING];            // where their clips begin
   _Alignas(32) uint32_t waiting[MOST_WAITING]; // children, after the end: BVH_NOTHING
 };
@@ -48,23 +52,45 @@ struct pool {
   _Alignas(BVH_LINE) struct slot slot[POOL];
   struct slot *queue[QUEUES][POOL];
   int count[QUEUES];
-  const char *base[BVH_NOTHING + 1]; // of the rows of a kind
-  uint32_t stride[BVH_NOTHING + 1];
+  const char *base[QUEUES]; // of the rows of a kind
+  uint32_t stride[QUEUES];
 };
 
 // ---- the level's own ----
 #ifdef __AVX512F__
 // Where a <= b, the values of `near` and `child` from far to near move to the end of the waiting.
-static inline int push(__m256i order, __m256 near, __m256 far, __m256i child, float *to_near,
-                       uint32_t *to_child) {
+static inline uint32_t push(__m256i order, __m256 near, __m256 far, __m256i child, float *to_near,
+                            uint32_t *to_child) {
   near = _mm256_permutexvar_ps(order, near);
   far = _mm256_permutexvar_ps(order, far);
   child = _mm256_permutexvar_epi32(order, child);
   __mmask8 hit = _mm256_cmp_ps_mask(near, far, _CMP_LE_OQ);
   _mm256_storeu_ps(to_near, _mm256_maskz_compress_ps(hit, near));
   _mm256_storeu_si256((__m256i *)to_child, _mm256_maskz_compress_epi32(hit, child));
-  return __builtin_popcount(hit);
+  return (uint32_t)__builtin_popcount(hit);
 }
+
+enum { WIDE = 8 };
+typedef double wide __attribute__((vector_size(8 * WIDE)));
+typedef __m256 narrow; // floats
+typedef __m512i places;
+
+static inline narrow gather(const void *from, places at) {
+  return _mm512_i64gather_ps(at, from, sizeof(float));
+}
+static inline wide gather_double(const void *from, places at) {
+  return (wide)_mm512_i64gather_pd(at, from, sizeof(double));
+}
+static inline wide widen(narrow x) { return (wide)_mm512_cvtps_pd(x); }
+static inline places plus(places at, int64_t n) {
+  return _mm512_add_epi64(at, _mm512_set1_epi64(n));
+}
+static inline wide least(wide a, wide b) { return (wide)_mm512_min_pd((__m512d)a, (__m512d)b); }
+static inline wide greatest(wide a, wide b) { return (wide)_mm512_max_pd((__m512d)a, (__m512d)b); }
+static inline unsigned less(wide a, wide b) {
+  return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ);
+}
+static inline unsigned same(narrow a, narrow b) { return _mm256_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
 #else
 // [mask]: the lanes that are set, one a byte.
 static uint64_t lanes_of[256];
@@ -75,8 +101,8 @@ __attribute__((constructor)) static void lanes_of_set(void) {
       if (mask >> lane & 1) lanes_of[mask] |= (uint64_t)lane << 8 * n++;
 }
 
-static inline int push(__m256i order, __m256 near, __m256 far, __m256i child, float *to_near,
-                       uint32_t *to_child) {
+static inline uint32_t push(__m256i order, __m256 near, __m256 far, __m256i child, float *to_near,
+                            uint32_t *to_child) {
   near = _mm256_permutevar8x32_ps(near, order);
   far = _mm256_permutevar8x32_ps(far, order);
   child = _mm256_permutevar8x32_epi32(child, order);
@@ -84,36 +110,72 @@ static inline int push(__m256i order, __m256 near, __m256 far, __m256i child, fl
   __m256i lane = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)lanes_of[hit]));
   _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, lane));
   _mm256_storeu_si256((__m256i *)to_child, _mm256_permutevar8x32_epi32(child, lane));
-  return __builtin_popcount((unsigned)hit);
+  return (uint32_t)__builtin_popcount((unsigned)hit);
+}
+
+enum { WIDE = 4 };
+typedef double wide __attribute__((vector_size(8 * WIDE)));
+typedef __m128 narrow; // floats
+typedef __m256i places;
+
+static inline narrow gather(const void *from, places at) {
+  return _mm256_i64gather_ps(from, at, sizeof(float));
+}
+static inline wide gather_double(const void *from, places at) {
+  return (wide)_mm256_i64gather_pd(from, at, sizeof(double));
+}
+static inline wide widen(narrow x) { return (wide)_mm256_cvtps_pd(x); }
+static inline places plus(places at, int64_t n) {
+  return _mm256_add_epi64(at, _mm256_set1_epi64x(n));
+}
+static inline wide least(wide a, wide b) { return (wide)_mm256_min_pd((__m256d)a, (__m256d)b); }
+static inline wide greatest(wide a, wide b) { return (wide)_mm256_max_pd((__m256d)a, (__m256d)b); }
+static inline unsigned less(wide a, wide b) {
+  return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LT_OQ));
+}
+static inline unsigned same(narrow a, narrow b) {
+  return (unsigned)_mm_movemask_ps(_mm_cmpeq_ps(a, b));
 }
 #endif
 
 // ---- where a ray goes ----
-static inline void send(struct pool *pool, struct slot *slot, int queue) {
+static inline void send(struct pool *pool, struct slot *slot, uint32_t queue) {
   pool->queue[queue][pool->count[queue]++] = slot;
 }
 
 static inline void go_to(struct pool *pool, struct slot *slot, uint32_t child) {
-  enum bvh_kind kind = bvh_kind_of(child);
+  uint32_t kind = bvh_kind_of(child);
   slot->row = bvh_row_of(child);
   const char *at = pool->base[kind] + (size_t)slot->row * pool->stride[kind];
   __builtin_prefetch(at);
   __builtin_prefetch(at + BVH_LINE);
   __builtin_prefetch(at + 2 * BVH_LINE);
   __builtin_prefetch(at + 3 * BVH_LINE);
-  send(pool, slot, (int)kind);
+  send(pool, slot, kind);
 }
 
-static inline void go_on(struct pool *pool, struct slot *slot) {
-  go_to(pool, slot, slot->waiting[--slot->n]);
-}
-
-// From a row of a leaf to its next row, if there is one.
+// From a row of a leaf to its next row, if there is one, or to what waits.
 static inline void go_on_in_leaf(struct pool *pool, struct slot *slot, enum bvh_kind kind,
                                  uint32_t more) {
   uint32_t waiting = slot->waiting[slot->n - 1];
   slot->n -= !more;
   go_to(pool, slot, more ? bvh_child(kind, slot->row + 1) : waiting);
+}
+
+// The same unless `stay`: then it stays in its row, and in `queue`. No branch: nothing predicts it.
+static inline void go_on_or_stay(struct pool *pool, struct slot *slot, uint32_t more, bool stay,
+                                 uint32_t queue) {
+  uint32_t row = slot->row, waiting = slot->waiting[slot->n - 1];
+  uint32_t next = more ? bvh_child(BVH_TRIANGLES, row + 1) : waiting;
+  uint32_t kind = bvh_kind_of(next), next_row = bvh_row_of(next);
+  slot->n -= !stay & !more;
+  slot->row = stay ? row : next_row;
+  const char *at = pool->base[kind] + (size_t)next_row * pool->stride[kind];
+  __builtin_prefetch(at);
+  __builtin_prefetch(at + BVH_LINE);
+  __builtin_prefetch(at + 2 * BVH_LINE);
+  __builtin_prefetch(at + 3 * BVH_LINE);
+  send(pool, slot, stay ? queue : kind);
 }
 
 // ---- a ray begins ----
@@ -134,18 +196,38 @@ static __attribute__((noinline)) bool slot_begin_parallel(struct slot *slot,
     slot->near_scale[k] = slot->far_scale[k] = INFINITY;
     slot->enter[k] = 64 * (uint32_t)k;
   }
+  slot->odd = true;
   return true;
 }
 
-static inline void slot_begin_shear(struct slot *slot, const struct ray *ray) {
-  struct shear shear;
-  shear_set(&shear, ray);
-  slot->o[0] = shear.o[shear.x], slot->o[1] = shear.o[shear.y], slot->o[2] = shear.o[shear.z];
-  slot->along_x = shear.along_x, slot->along_y = shear.along_y;
+// shear_set
+static inline void slot_begin_shear(struct slot *slot, const struct ray *ray,
+                                    const double size[3]) {
+  static const int z_of[4] = {1, 0, 2, 2}, x_of[3] = {1, 2, 0}, y_of[3] = {2, 0, 1};
+  double largest = size[0] > size[1] ? size[0] : size[1];
+  int z = z_of[(size[0] > size[1]) | (size[2] > largest) << 1], x = x_of[z], y = y_of[z];
+  const double *o = &ray->o.x, *d = &ray->d.x;
+  __m128d along = _mm_div_pd(_mm_set_pd(d[y], d[x]), _mm_set1_pd(d[z]));
+  slot->shear_o[0] = o[x], slot->shear_o[1] = o[y], slot->shear_o[2] = o[z];
+  _mm_storeu_pd(&slot->along_x, along);
   const uint32_t bytes = BVH_BLOCK * sizeof(float);
-  slot->axis[0] = bytes * (uint32_t)shear.x;
-  slot->axis[1] = bytes * (uint32_t)shear.y;
-  slot->axis[2] = bytes * (uint32_t)shear.z;
+  slot->axis[0] = bytes * (uint32_t)x;
+  slot->axis[1] = bytes * (uint32_t)y;
+  slot->axis[2] = bytes * (uint32_t)z;
+}
+
+// Where the triangle is that the ray leaves. A patch is odd.
+static inline void slot_begin_left(struct slot *slot, const struct bvh *bvh) {
+  uint32_t leaving = slot->search.ray->leaving;
+  slot->left = -1;
+  slot->odd = false;
+  if (leaving == PRIMITIVE_NONE) return;
+  uint32_t lane = bvh->lane[leaving];
+  slot->odd = lane == ROW_NONE;
+  if (slot->odd) return;
+  slot->left = (int64_t)BLOCK_FLOATS * (lane / BVH_BLOCK) + lane % BVH_BLOCK;
+  for (int i = 0; i < 3; i++)
+    __builtin_prefetch((const char *)(bvh->block + lane / BVH_BLOCK) + i * BVH_LINE);
 }
 
 enum begun { BEGUN, MISSES, ODD };
@@ -153,40 +235,46 @@ enum begun { BEGUN, MISSES, ODD };
 static inline enum begun slot_begin(struct slot *slot, const struct bvh *bvh) {
   const struct ray *ray = slot->search.ray;
   const __m256d sign = _mm256_set1_pd(-0.0);
-  __m256d o = _mm256_set_pd(1, ray->o.z, ray->o.y, ray->o.x);
-  __m256d d = _mm256_set_pd(0, ray->d.z, ray->d.y, ray->d.x);
-  __m256d size = _mm256_andnot_pd(sign, d), distance = _mm256_andnot_pd(sign, o);
-  __m256d largest = _mm256_max_pd(size, _mm256_permute4x64_pd(size, 0x39));
-  largest = _mm256_max_pd(largest, _mm256_permute4x64_pd(largest, 0x4e));
-  __m256d too_far = _mm256_cmp_pd(distance, _mm256_set1_pd(LARGEST), _CMP_NLE_UQ);
-  double longest = _mm256_cvtsd_f64(largest);
-  if (_mm256_movemask_pd(too_far) || !(longest >= SMALLEST && longest <= LARGEST)) return ODD;
+  __m256d o = _mm256_blend_pd(_mm256_loadu_pd(&ray->o.x), _mm256_set1_pd(1), 8);
+  __m256d d = _mm256_loadu_pd(&ray->d.x); // and t_max
+  __m256d distance = _mm256_andnot_pd(sign, o);
+  __m256d size = _mm256_andnot_pd(sign, _mm256_blend_pd(d, _mm256_setzero_pd(), 8));
+  __m256d largest = _mm256_max_pd(size, _mm256_permute4x64_pd(size, 0x4e));
+  largest = _mm256_max_pd(largest, _mm256_permute_pd(largest, 5));
+  __m256d outside = _mm256_cmp_pd(distance, _mm256_set1_pd(LARGEST), _CMP_NLE_UQ);
+  outside = _mm256_or_pd(outside, _mm256_cmp_pd(size, _mm256_set1_pd(LARGEST), _CMP_NLE_UQ));
+  outside = _mm256_or_pd(outside, _mm256_cmp_pd(largest, _mm256_set1_pd(SMALLEST), _CMP_NGE_UQ));
+  if (_mm256_movemask_pd(outside)) return ODD;
   __m256d w = _mm256_mul_pd(_mm256_set1_pd(CLIP_APERTURE), largest), one = _mm256_set1_pd(1);
   __m256d near = _mm256_div_pd(one, _mm256_add_pd(size, w));
   __m256d far = _mm256_div_pd(one, _mm256_sub_pd(size, w));
   int parallel = _mm256_movemask_pd(_mm256_cmp_pd(size, w, _CMP_LE_OQ)) & 7;
-  int backward = _mm256_movemask_pd(_mm256_cmp_pd(d, _mm256_setzero_pd(), _CMP_LT_OQ));
-  __m256d along = _mm256_and_pd(sign, d);
+  __m256d backward = _mm256_cmp_pd(d, _mm256_setzero_pd(), _CMP_LT_OQ);
+  __m256d along = _mm256_and_pd(sign, backward);
   __m256d slack =
       _mm256_add_pd(_mm256_mul_pd(distance, _mm256_set1_pd(0x1p-23)), _mm256_set1_pd(0x1p-126));
-  _mm256_storeu_pd(slot->cone_o, o);
-  _mm256_storeu_pd(slot->cone_near, _mm256_or_pd(near, along));
-  _mm256_storeu_pd(slot->cone_far, _mm256_or_pd(far, along));
-  slot->parallel = parallel;
   slack = _mm256_or_pd(slack, along);
-  near = _mm256_or_pd(_mm256_mul_pd(near, _mm256_set1_pd(1 - 0x1p-22)), along);
-  far = _mm256_or_pd(_mm256_mul_pd(far, _mm256_set1_pd(1 + 0x1p-22)), along);
+  near = _mm256_or_pd(near, along);
+  far = _mm256_or_pd(far, along);
+  _mm256_store_pd(slot->o, o);
+  _mm256_store_pd(slot->d, d);
+  _mm256_store_pd(slot->near, near);
+  _mm256_store_pd(slot->far, far);
   _mm_store_ps(slot->near_o, floats(_mm256_add_pd(o, slack)));
   _mm_store_ps(slot->far_o, floats(_mm256_sub_pd(o, slack)));
-  _mm_store_ps(slot->near_scale, floats(near));
-  _mm_store_ps(slot->far_scale, floats(far));
-  for (int k = 0; k < 3; k++) slot->enter[k] = (uint32_t)(64 * k + 32 * (backward >> k & 1));
-  slot->octant = (uint32_t)backward;
+  _mm_store_ps(slot->near_scale, floats(_mm256_mul_pd(near, _mm256_set1_pd(1 - 0x1p-22))));
+  _mm_store_ps(slot->far_scale, floats(_mm256_mul_pd(far, _mm256_set1_pd(1 + 0x1p-22))));
+  const uint32_t octant = (uint32_t)_mm256_movemask_pd(backward) & 7;
+  for (uint32_t k = 0; k < 3; k++) slot->enter[k] = 64 * k + 32 * (octant >> k & 1);
+  slot->enter[3] = octant;
   slot->limit = (float)slot->search.best.t;
   slot->waiting[0] = bvh_child(BVH_NOTHING, 0);
   slot->waiting_near[0] = -INFINITY;
   slot->n = 1;
-  slot_begin_shear(slot, ray);
+  double of_axis[4];
+  _mm256_storeu_pd(of_axis, size);
+  slot_begin_shear(slot, ray, of_axis);
+  slot_begin_left(slot, bvh);
   return !parallel || slot_begin_parallel(slot, bvh) ? BEGUN : MISSES;
 }
 
@@ -197,8 +285,8 @@ static inline bool begin_next(struct pool *pool, struct slot *slot, const struct
     int j = (*next)++;
     search_begin(&slot->search, q, j, kind);
     slot->j = j;
-    if (slot->search.ray->leaving != PRIMITIVE_NONE)
-      __builtin_prefetch(&bvh->lane[slot->search.ray->leaving]);
+    uint32_t later = q->ray[j + AHEAD < q->n ? j + AHEAD : j].leaving;
+    if (later != PRIMITIVE_NONE) __builtin_prefetch(&bvh->lane[later]);
     enum begun begun = slot_begin(slot, bvh);
     if (begun == BEGUN) {
       go_to(pool, slot, bvh->root);
@@ -230,11 +318,12 @@ static inline void visit_node(struct pool *pool, struct slot *slot, const struct
     far = _mm256_min_ps(_mm256_mul_ps(last, _mm256_set1_ps(slot->far_scale[k])), far);
   }
   const __m256i shifts = _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21);
-  __m256i order = _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[slot->octant]), shifts);
+  __m256i order = _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[slot->enter[3]]), shifts);
   __m256i child = _mm256_load_si256((const __m256i *)node->child);
-  int n = slot->n;
-  slot->n += push(order, near, far, child, slot->waiting_near + n, slot->waiting + n);
-  go_on(pool, slot);
+  uint32_t n = slot->n;
+  n += push(order, near, far, child, slot->waiting_near + n, slot->waiting + n) - 1;
+  slot->n = n;
+  go_to(pool, slot, slot->waiting[n]);
 }
 
 typedef double lanes __attribute__((vector_size(32)));
@@ -249,9 +338,9 @@ static inline int block_accepts(const struct slot *slot, const struct bvh_block 
   lanes x[3], y[3];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; i++) {
-    lanes z = corner(block, i, slot->axis[2]) - slot->o[2];
-    x[i] = (corner(block, i, slot->axis[0]) - slot->o[0]) - slot->along_x * z;
-    y[i] = (corner(block, i, slot->axis[1]) - slot->o[1]) - slot->along_y * z;
+    lanes z = corner(block, i, slot->axis[2]) - slot->shear_o[2];
+    x[i] = (corner(block, i, slot->axis[0]) - slot->shear_o[0]) - slot->along_x * z;
+    y[i] = (corner(block, i, slot->axis[1]) - slot->shear_o[1]) - slot->along_y * z;
   }
   lanes e0 = x[1] * y[2] - y[1] * x[2];
   lanes e1 = x[2] * y[0] - y[2] * x[0];
@@ -263,40 +352,24 @@ static inline int block_accepts(const struct slot *slot, const struct bvh_block 
 
 static inline void visit_block(struct pool *pool, struct slot *slot, const struct bvh *bvh) {
   const struct bvh_block *block = &bvh->block[slot->row];
-  slot->accepted = block_accepts(slot, block);
-  if (slot->accepted)
-    send(pool, slot, QUEUE_HITS);
-  else
-    go_on_in_leaf(pool, slot, BVH_TRIANGLES, block->more);
-}
-
-// triangle_plane
-static inline lanes block_plane(const struct ray *ray, const struct bvh_block *block) {
-  lanes p[3][3];
-#pragma GCC unroll 3
-  for (uint32_t i = 0; i < 3; i++)
-#pragma GCC unroll 3
-    for (uint32_t k = 0; k < 3; k++) p[i][k] = corner(block, (int)i, 16 * k);
-  lanes ax = p[0][0] - p[2][0], ay = p[0][1] - p[2][1], az = p[0][2] - p[2][2];
-  lanes bx = p[1][0] - p[2][0], by = p[1][1] - p[2][1], bz = p[1][2] - p[2][2];
-  lanes nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
-  lanes x = p[0][0] - ray->o.x, y = p[0][1] - ray->o.y, z = p[0][2] - ray->o.z;
-  return (nx * x + ny * y + nz * z) / (nx * ray->d.x + ny * ray->d.y + nz * ray->d.z);
+  __m128i left = _mm_cmpeq_epi32(_mm_load_si128((const __m128i *)block->primitive),
+                                 _mm_set1_epi32((int)slot->search.ray->leaving));
+  slot->accepted =
+      (uint32_t)(block_accepts(slot, block) & ~_mm_movemask_ps(_mm_castsi128_ps(left)));
+  uint32_t queue = slot->odd ? QUEUE_ODD : QUEUE_HITS;
+  go_on_or_stay(pool, slot, block->more, slot->accepted != 0, queue);
 }
 
 // What waits and begins beyond the best t is dropped.
 static inline void tighten(struct slot *slot) {
-  float limit = (float)slot->search.best.t;
-  if (!(limit < slot->limit)) return;
-  slot->limit = limit;
   const __m256i in_order = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-  int n = slot->n, kept = 1;
-  for (int first = 1; first < n; first += 8) {
+  __m256 limit = _mm256_set1_ps(slot->limit = (float)slot->search.best.t);
+  uint32_t n = slot->n, kept = 1;
+  for (uint32_t first = 1; first < n; first += 8) {
     __m256 near = _mm256_loadu_ps(slot->waiting_near + first);
     __m256i child = _mm256_loadu_si256((const __m256i *)(slot->waiting + first));
-    __m256i left = _mm256_cmpgt_epi32(_mm256_set1_epi32(n - first), in_order);
-    __m256 bound =
-        _mm256_blendv_ps(_mm256_set1_ps(NAN), _mm256_set1_ps(limit), _mm256_castsi256_ps(left));
+    __m256i left = _mm256_cmpgt_epi32(_mm256_set1_epi32((int)(n - first)), in_order);
+    __m256 bound = _mm256_blendv_ps(_mm256_set1_ps(NAN), limit, _mm256_castsi256_ps(left));
     kept += push(in_order, near, bound, child, slot->waiting_near + kept, slot->waiting + kept);
   }
   slot->n = kept;
@@ -304,134 +377,162 @@ static inline void tighten(struct slot *slot) {
 
 static inline void end(struct pool *pool, struct slot *slot) { send(pool, slot, BVH_NOTHING); }
 
-// clip_accept for four triangles.
-static inline lanes block_clip(const struct slot *slot, const struct bvh_block *block, lanes *t) {
-  lanes near = {0}, far = near + INFINITY;
-#pragma GCC unroll 3
-  for (int k = 0; k < 3; k++) {
-    __m128 a = _mm_load_ps(block->vertex[0][k]), b = _mm_load_ps(block->vertex[1][k]),
-           c = _mm_load_ps(block->vertex[2][k]);
-    __m128 lo = _mm_min_ps(c, _mm_min_ps(a, b)), hi = _mm_max_ps(c, _mm_max_ps(a, b));
-    bool backward = slot->octant >> k & 1;
-    lanes first = (lanes)_mm256_cvtps_pd(backward ? hi : lo) - slot->cone_o[k];
-    lanes last = (lanes)_mm256_cvtps_pd(backward ? lo : hi) - slot->cone_o[k];
-    near = (lanes)_mm256_max_pd((__m256d)(first * slot->cone_near[k]), (__m256d)near);
-    far = (lanes)_mm256_min_pd((__m256d)(last * slot->cone_far[k]), (__m256d)far);
-  }
-  // *t < near ? near : *t, and then *t > far ? far : *t
-  *t = (lanes)_mm256_max_pd((__m256d)near, (__m256d)*t);
-  *t = (lanes)_mm256_min_pd((__m256d)far, (__m256d)*t);
-  return (lanes)((near <= far) & (*t > 0) & (*t < slot->search.ray->t_max));
-}
-
-// The triangle that a ray leaves.
-struct left {
-  float vertex[3][3];
-  struct vec normal, p;
-  double side;
+// WIDE rays and one triangle of each, which its edge functions accept.
+struct pairs {
+  struct slot *slot[WIDE];
+  double t[WIDE];
+  unsigned hit; // bit of each that clip_accept accepts and that is not left behind
 };
 
-static inline bool left_set(struct left *left, const struct bvh *bvh, const struct ray *ray) {
-  uint32_t lane = bvh->lane[ray->leaving];
-  if (lane == ROW_NONE) return false;
-  const struct bvh_block *block = &bvh->block[lane / BVH_BLOCK];
+static inline void pairs_corners(const struct bvh *bvh, places at, narrow corner[3][3]) {
+#pragma GCC unroll 3
   for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) left->vertex[i][k] = block->vertex[i][k][lane % BVH_BLOCK];
-  left->normal = triangle_cross((const float(*)[3])left->vertex);
-  left->p = triangle_vertex(left->vertex[0]);
-  left->side = vec_dot(left->normal, ray->d);
-  return true;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++)
+      corner[i][k] = gather(bvh->block, plus(at, BVH_BLOCK * (3 * i + k)));
 }
 
-// Which of four triangles have vertex i on the side the ray goes to.
-static inline int vertices_ahead(const struct left *left, const struct bvh_block *block, int i) {
-  lanes x = corner(block, i, 0) - left->p.x, y = corner(block, i, 16) - left->p.y,
-        z = corner(block, i, 32) - left->p.z;
-  lanes height = left->normal.x * x + left->normal.y * y + left->normal.z * z;
-  return _mm256_movemask_pd((__m256d)(left->side > 0 ? height > 0 : height < 0));
-}
-
-static inline bool is_shared(const struct left *left, const struct bvh_block *block, int i,
-                             int lane) {
-  const float(*v)[BVH_BLOCK] = block->vertex[i];
-  for (int j = 0; j < 3; j++)
-    if (v[0][lane] == left->vertex[j][0] && v[1][lane] == left->vertex[j][1] &&
-        v[2][lane] == left->vertex[j][2])
-      return true;
-  return false;
-}
-
-// triangle_is_left_behind of the triangles `bits` of a block; which of them are not.
-static inline int not_left_behind(const struct slot *slot, const struct bvh *bvh,
-                                  const struct bvh_block *block, int bits) {
-  const struct ray *ray = slot->search.ray;
-  struct left left;
-  if (ray->leaving == PRIMITIVE_NONE) return bits;
-  if (!left_set(&left, bvh, ray)) {
-    for (int lane = 0; lane < BVH_BLOCK; lane++) {
-      float vertex[3][3];
-      for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) vertex[i][k] = block->vertex[i][k][lane];
-      if (bits >> lane & 1 && triangle_is_left_behind(bvh->scene, ray, (const float(*)[3])vertex))
-        bits &= ~(1 << lane);
-    }
-    return bits;
+// triangle_cross
+static inline void pairs_cross(const narrow corner[3][3], wide n[3]) {
+  wide a[3], b[3];
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; k++) {
+    a[k] = widen(corner[0][k]) - widen(corner[2][k]);
+    b[k] = widen(corner[1][k]) - widen(corner[2][k]);
   }
-  if (left.side == 0) return bits;
-  int ahead[3];
-  for (int i = 0; i < 3; i++) ahead[i] = vertices_ahead(&left, block, i);
-  int kept = 0;
-  for (int lane = 0; lane < BVH_BLOCK; lane++)
-    for (int i = 0; i < 3 && bits >> lane & 1; i++)
-      if (ahead[i] >> lane & 1 && !is_shared(&left, block, i, lane)) {
-        kept |= 1 << lane;
-        break;
-      }
-  return kept;
+  n[0] = a[1] * b[2] - a[2] * b[1];
+  n[1] = a[2] * b[0] - a[0] * b[2];
+  n[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static inline int not_leaving(const struct bvh_block *block, const struct ray *ray) {
-  __m128i same = _mm_cmpeq_epi32(_mm_load_si128((const __m128i *)block->primitive),
-                                 _mm_set1_epi32((int)ray->leaving));
-  return ~_mm_movemask_ps(_mm_castsi128_ps(same));
+static inline wide pairs_dot(const wide a[3], const wide b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// triangle_plane and clip_accept. The face by which an axis is entered is that of the corner whose
+// (corner - o) * near_scale is the least, as that product is monotone: no choice by direction.
+static inline wide pairs_t(const narrow corner[3][3], const struct pool *pool, places slot,
+                           unsigned *hit) {
+  const places ray = plus(slot, offsetof(struct slot, o) / sizeof(double));
+  wide n[3], from[3], d[3], near = {0}, far = near + INFINITY;
+  pairs_cross(corner, n);
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; k++) {
+    wide o = gather_double(pool, plus(ray, k)), enter = gather_double(pool, plus(ray, 8 + k)),
+         leave = gather_double(pool, plus(ray, 12 + k));
+    d[k] = gather_double(pool, plus(ray, 4 + k));
+    from[k] = widen(corner[0][k]) - o;
+    wide b = widen(corner[1][k]) - o, c = widen(corner[2][k]) - o;
+    near = greatest(least(least(from[k] * enter, b * enter), c * enter), near);
+    far = least(greatest(greatest(from[k] * leave, b * leave), c * leave), far);
+  }
+  wide t = pairs_dot(n, from) / pairs_dot(n, d), zero = {0};
+  *hit = less(zero, t) & less(t, zero + INFINITY) & ~less(far, near);
+  t = least(far, greatest(near, t));
+  *hit &= less(zero, t) & less(t, gather_double(pool, plus(ray, 7)));
+  return t;
+}
+
+// !triangle_is_left_behind
+static inline unsigned pairs_not_behind(const struct bvh *bvh, const narrow corner[3][3],
+                                        const struct pool *pool, places slot, places at) {
+  const places d_at = plus(slot, offsetof(struct slot, d) / sizeof(double));
+  narrow left[3][3];
+  wide n[3], d[3], zero = {0};
+  pairs_corners(bvh, at, left);
+  pairs_cross((const narrow(*)[3])left, n);
+  for (int k = 0; k < 3; k++) d[k] = gather_double(pool, plus(d_at, k));
+  wide side = pairs_dot(n, d);
+  unsigned forward = less(zero, side), ahead = ~(forward | less(side, zero));
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; i++) {
+    wide v[3];
+    unsigned shared = 0;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) v[k] = widen(corner[i][k]) - widen(left[0][k]);
+    wide height = pairs_dot(n, v);
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; j++)
+      shared |= same(corner[i][0], left[j][0]) & same(corner[i][1], left[j][1]) &
+                same(corner[i][2], left[j][2]);
+    unsigned up = less(zero, height), down = less(height, zero);
+    ahead |= ((forward & up) | (~forward & down)) & ~shared;
+  }
+  return ahead;
+}
+
+static inline void pairs_test(struct pairs *pairs, const struct bvh *bvh, const struct pool *pool) {
+  int64_t slot_at[WIDE], at[WIDE], left_at[WIDE];
+  unsigned none = 0;
+  for (int w = 0; w < WIDE; w++) {
+    const struct slot *slot = pairs->slot[w];
+    slot_at[w] = ((const char *)slot - (const char *)pool) / (ptrdiff_t)sizeof(double);
+    at[w] = (int64_t)BLOCK_FLOATS * slot->row + __builtin_ctz(slot->accepted);
+    left_at[w] = slot->left < 0 ? 0 : slot->left;
+    none |= (unsigned)(slot->left < 0) << w;
+  }
+  places in_pool, in_blocks, left;
+  memcpy(&in_pool, slot_at, sizeof in_pool);
+  memcpy(&in_blocks, at, sizeof in_blocks);
+  memcpy(&left, left_at, sizeof left);
+  narrow corner[3][3];
+  pairs_corners(bvh, in_blocks, corner);
+  wide t = pairs_t((const narrow(*)[3])corner, pool, in_pool, &pairs->hit);
+  memcpy(pairs->t, &t, sizeof t);
+  if (none != (1u << WIDE) - 1)
+    pairs->hit &= none | pairs_not_behind(bvh, (const narrow(*)[3])corner, pool, in_pool, left);
+}
+
+static inline void keep_hit(struct pool *pool, struct slot *slot, const struct bvh *bvh,
+                            enum search_kind kind, bool hit, double t) {
+  const struct bvh_block *block = &bvh->block[slot->row];
+  struct search *search = &slot->search;
+  uint32_t primitive = block->primitive[__builtin_ctz(slot->accepted)];
+  hit &= hit_is_before(t, primitive, &search->best);
+  slot->accepted &= slot->accepted - 1;
+  if (kind == SEARCH_CLOSEST) {
+    search->best.t = hit ? t : search->best.t;
+    search->best.primitive = hit ? primitive : search->best.primitive;
+    search->found |= hit;
+    tighten(slot);
+    go_on_or_stay(pool, slot, block->more, slot->accepted != 0, QUEUE_HITS);
+    return;
+  }
+  bool over = hit && search_keep(bvh, search, kind, t, primitive);
+  if (kind == SEARCH_BLOCKER && hit && !over) tighten(slot);
+  go_on_or_stay(pool, slot, block->more, over | (slot->accepted != 0),
+                over ? BVH_NOTHING : QUEUE_HITS);
+}
+
+static inline void visit_hits(struct pool *pool, struct slot *const *slot, int n,
+                              const struct bvh *bvh, enum search_kind kind) {
+  for (int first = 0; first < n; first += WIDE) {
+    struct pairs pairs;
+    int count = n - first < WIDE ? n - first : WIDE;
+    for (int w = 0; w < WIDE; w++) pairs.slot[w] = slot[first + (w < count ? w : 0)];
+    pairs_test(&pairs, bvh, pool);
+    for (int w = 0; w < count; w++)
+      keep_hit(pool, pairs.slot[w], bvh, kind, pairs.hit >> w & 1, pairs.t[w]);
+  }
 }
 
 // Of an axis that is parallel cone_clip works in another way: one triangle after the other.
-static bool visit_hits_parallel(struct slot *slot, const struct bvh *bvh,
-                                const struct bvh_block *block, enum search_kind kind, int bits,
-                                lanes t) {
-  struct cone cone;
-  cone_set(&cone, slot->search.ray);
-  for (int lane = 0; lane < BVH_BLOCK; lane++)
-    if (bits >> lane & 1 && search_triangle(bvh, &slot->search, kind, &cone, block, lane, t[lane]))
-      return true;
-  return false;
-}
-
-static inline bool keep_hits(struct slot *slot, const struct bvh *bvh,
-                             const struct bvh_block *block, enum search_kind kind) {
-  struct search *search = &slot->search;
-  const struct ray *ray = search->ray;
-  lanes t = block_plane(ray, block);
-  lanes ahead = (lanes)((t > 0) & (t < INFINITY));
-  int bits = slot->accepted & not_leaving(block, ray) & _mm256_movemask_pd((__m256d)ahead);
-  if (slot->parallel) return visit_hits_parallel(slot, bvh, block, kind, bits, t);
-  bits &= _mm256_movemask_pd((__m256d)block_clip(slot, block, &t));
-  bits &= _mm256_movemask_pd((__m256d)(t <= search->best.t));
-  bits = not_left_behind(slot, bvh, block, bits);
-  for (int lane = 0; bits; lane++, bits >>= 1)
-    if (bits & 1 && hit_is_before(t[lane], block->primitive[lane], &search->best) &&
-        search_keep(bvh, search, kind, t[lane], block->primitive[lane]))
-      return true;
-  return false;
-}
-
-static inline void visit_hits(struct pool *pool, struct slot *slot, const struct bvh *bvh,
-                              enum search_kind kind) {
+static __attribute__((noinline)) void visit_odd(struct pool *pool, struct slot *slot,
+                                                const struct bvh *bvh, enum search_kind kind) {
   const struct bvh_block *block = &bvh->block[slot->row];
-  if (keep_hits(slot, bvh, block, kind)) {
-    end(pool, slot);
-    return;
+  const struct ray *ray = slot->search.ray;
+  struct cone cone;
+  cone_set(&cone, ray);
+  for (int lane = 0; lane < BVH_BLOCK; lane++) {
+    float vertex[3][3];
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) vertex[i][k] = block->vertex[i][k][lane];
+    double t = triangle_plane(ray, (const float(*)[3])vertex);
+    if (slot->accepted >> lane & 1 &&
+        search_triangle(bvh, &slot->search, kind, &cone, block, lane, t)) {
+      end(pool, slot);
+      return;
+    }
   }
   if (kind != SEARCH_ANY) tighten(slot);
   go_on_in_leaf(pool, slot, BVH_TRIANGLES, block->more);
@@ -462,12 +563,12 @@ static inline __attribute__((always_inline)) void
 run(const struct bvh *bvh, const struct queries *q, enum search_kind kind) {
   struct pool pool;
   struct slot *now[POOL];
-  for (int k = 0; k < QUEUES; k++) pool.count[k] = 0;
+  for (int k = 0; k < QUEUES; k++)
+    pool.count[k] = 0, pool.base[k] = (const char *)&pool, pool.stride[k] = 0;
   pool.base[BVH_NODE] = (const char *)bvh->node, pool.stride[BVH_NODE] = sizeof *bvh->node;
   pool.base[BVH_TRIANGLES] = (const char *)bvh->block;
   pool.stride[BVH_TRIANGLES] = sizeof *bvh->block;
   pool.base[BVH_OTHERS] = (const char *)bvh->other, pool.stride[BVH_OTHERS] = sizeof *bvh->other;
-  pool.base[BVH_NOTHING] = (const char *)&pool, pool.stride[BVH_NOTHING] = 0;
   int next = 0, in_flight = 0;
   for (int k = 0; k < POOL; k++) in_flight += begin_next(&pool, &pool.slot[k], bvh, q, kind, &next);
   while (in_flight > 0) {
@@ -476,7 +577,9 @@ run(const struct bvh *bvh, const struct queries *q, enum search_kind kind) {
     n = take(&pool, BVH_TRIANGLES, now);
     for (int i = 0; i < n; i++) visit_block(&pool, now[i], bvh);
     n = take(&pool, QUEUE_HITS, now);
-    for (int i = 0; i < n; i++) visit_hits(&pool, now[i], bvh, kind);
+    visit_hits(&pool, now, n, bvh, kind);
+    n = take(&pool, QUEUE_ODD, now);
+    for (int i = 0; i < n; i++) visit_odd(&pool, now[i], bvh, kind);
     n = take(&pool, BVH_OTHERS, now);
     for (int i = 0; i < n; i++) visit_other(&pool, now[i], bvh, kind);
     n = take(&pool, BVH_NOTHING, now);
