@@ -1,6 +1,7 @@
 // `photonlab info` says what a scene uses and which features it lets us skip.
 #define _GNU_SOURCE // fmemopen
 #include "scene/info.h"
+#include "scene/skip.h"
 #include "scene_text.h"
 
 static char said[8192];
@@ -59,6 +60,20 @@ static void what_a_scene_does_not_need_is_said_so(void **state) {
   assert_null(strstr(said, "sigma"));
 }
 
+static void each_skip_is_listed_and_says_whether_it_applies(void **state) {
+  (void)state;
+  info_of("WorldBegin LightSource \"point\" Shape \"sphere\"");
+  for (int k = 0; k < n_skip_rows; k++)
+    assert_says(arena_format(&test_memory()->lists, "\n  %-12s ", skip_rows[k].name));
+  assert_says("\n  motion       yes: ");
+  assert_says("\n  media        yes: ");
+  assert_says("\n  tree         yes: ");
+  info_of("WorldBegin LightSource \"point\" ActiveTransform EndTime Translate 1 0 0\n"
+          "Shape \"sphere\"");
+  assert_says("\n  motion       no, something moves: ");
+  assert_says("\n  static-eye   no, ");
+}
+
 static void a_grid_says_where_it_is_and_how_dense(void **state) {
   (void)state;
   info_of("Translate 1 2 3 Scale 2 2 2 MakeNamedMedium \"a\" \"string type\" \"uniformgrid\"\n"
@@ -74,6 +89,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_a_scene_uses_is_listed),
       cmocka_unit_test(what_a_scene_does_not_need_is_said_so),
+      cmocka_unit_test(each_skip_is_listed_and_says_whether_it_applies),
       cmocka_unit_test(a_grid_says_where_it_is_and_how_dense),
   };
   return cmocka_run_group_tests_name("scene_info", tests, NULL, NULL);
