@@ -189,7 +189,8 @@ static void check_crop(const char *film, int x, int y, int width, int height) {
   assert_int_equal(scene.camera.width, width);
   assert_int_equal(scene.camera.height, height);
   struct ray cropped = ray(&scene, 1.385, .25);
-  assert_memory_equal(&cropped, &r, sizeof r);
+  assert_memory_equal(&cropped, &r, offsetof(struct ray, leaving)); // what follows is padding
+  assert_int_equal(cropped.leaving, r.leaving);
 }
 
 static void a_cropped_image_is_that_part_of_the_film(void **state) {
