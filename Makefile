@@ -299,7 +299,7 @@ $(call object,$(bench_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_b
 # Rays are counted where the walks ask for them.
 $(bench): $(call object,$(bench_sources)) $(gen)/bench.o $(library) $(gen)/version.o
 	@mkdir -p $(@D)
-	$(call quiet,LD,$@)$(CC) $(CFLAGS) -Wl,--wrap=bvh_closest $^ $(LDLIBS) $(if $(EMBREE),-lembree3) -o $@
+	$(call quiet,LD,$@)$(CC) $(CFLAGS) -Wl,--wrap=bvh_closest,--wrap=bvh_blockers $^ $(LDLIBS) $(if $(EMBREE),-lembree3) -o $@
 
 .PHONY: bench bench-compare bench-skip bench-program
 bench-program: $(bench)

@@ -131,7 +131,11 @@ static bool pass(struct walk *walk, int k) {
 void connect_finish(struct walk *walk, double *sum) {
   struct shadow *shadow = &walk->shadow;
   while (shadow->n > 0) {
-    bvh_closest(walk->bvh, shadow->ray, shadow->hit, shadow->n);
+    if (walk->features.see_through) // what is in the way may let light pass: which comes first?
+      bvh_closest(walk->bvh, shadow->ray, shadow->hit, shadow->n);
+    else
+      bvh_blockers(walk->bvh, shadow->ray, shadow->distance, shadow->emitter, shadow->hit,
+                   shadow->n);
     int left = 0;
     for (int k = 0; k < shadow->n; k++) {
       if (sees(walk->scene, &shadow->ray[k], shadow->hit[k], shadow->distance[k],

@@ -1,4 +1,4 @@
-// How many closest-hit rays the walks have traced since the last call.
+// How many rays, those towards lights included, the walks have traced since the last call.
 #ifndef TESTS_BENCH_COUNT_H
 #define TESTS_BENCH_COUNT_H
 
