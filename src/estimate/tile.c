@@ -47,7 +47,7 @@ static void connect_points(struct tile *tile, int first, int n, int sets) {
     uint64_t set = (uint64_t)((first + j) / (measure->n_points / sets));
     walk->path[j] = eye_path(camera, measure->pixel[first + j]) + set * pixels;
   }
-  walk_random(walk, 2, pair_of_vertex(0, VERTEX_LIGHT));
+  if (walk->scene->n_lights > 1) walk_random(walk, 2, pair_of_vertex(0, VERTEX_LIGHT));
   walk_random(walk, 3, pair_of_vertex(0, VERTEX_EMITTER));
   connect_begin(walk);
   for (int j = 0; j < n; j++) {

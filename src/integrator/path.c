@@ -81,19 +81,34 @@ static inline void connect(const struct path *state, int j, struct connection *f
   connect_add(walk, from, walk->u[2][0][j], u, true);
 }
 
+static void connect_surface(const struct path *state, int j, const struct bsdf *bsdf,
+                            struct vec p) {
+  const struct walk *walk = state->walk;
+  struct connection from = {.bsdf = bsdf, .p = p, .primitive = walk->hit[j].primitive};
+  for (int c = 0; c < walk->n_channels; c++) from.weight[c] = walk->throughput[c][j];
+  connect(state, j, &from);
+}
+
+// At a facet that emits nothing. True: the path goes on.
+static bool meet_facet(const struct path *state, int j) {
+  struct bsdf bsdf;
+  walk_facet_bsdf(state->walk, j, walk_facet(state->walk, j), &bsdf);
+  connect_surface(state, j, &bsdf, walk_point(state->walk, j));
+  return walk_scatter_facet(state->walk, j);
+}
+
 // At a surface. True: the path goes on.
 static bool meet_surface(const struct path *state, int j, bool last, double *frame) {
   struct walk *walk = state->walk;
+  const struct shape *facet = last ? NULL : walk_facet(walk, j);
+  if (facet && facet->light == LIGHT_NONE) return meet_facet(state, j);
   struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
   add_emission(state, j, &surface, frame);
   if (last) return false;
   struct bsdf bsdf = walk_bsdf(walk, j, &surface);
   if (!bsdf.type) return false;
-  struct connection from = {.bsdf = &bsdf, .p = surface.p, .primitive = surface.primitive};
-  for (int c = 0; c < walk->n_channels; c++) from.weight[c] = walk->throughput[c][j];
-  connect(state, j, &from);
-  return walk_facet(walk, j) >= 0 ? walk_scatter_facet(walk, j)
-                                  : walk_scatter(walk, j, &surface, &bsdf);
+  connect_surface(state, j, &bsdf, surface.p);
+  return walk_scatter(walk, j, &surface, &bsdf);
 }
 
 // The same in a medium, whose emission next-event estimation does not look for.
@@ -106,8 +121,7 @@ static bool meet_medium(const struct path *state, int j, bool last, double *fram
       frame[walk->owner[j] * n + c] += collision->weight[c] * collision->at.emission[c];
   if (last) return false;
   struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
-  struct connection from = {
-      .bsdf = &phase, .p = walk_collision_point(walk, j), .primitive = PRIMITIVE_NONE};
+  struct connection from = {.bsdf = &phase, .p = walk_point(walk, j), .primitive = PRIMITIVE_NONE};
   for (int c = 0; c < n; c++) from.weight[c] = collision->weight[c] * collision->at.sigma_s[c];
   connect(state, j, &from);
   return walk_scatter_in_medium(walk, j);
@@ -120,7 +134,8 @@ static void meet(const struct path *state, double *frame) {
   int alive = 0;
   if (!last) {
     walk_vertex_random(walk);
-    walk_random(walk, 2, pair_of_vertex(walk->vertex, VERTEX_LIGHT));
+    if (walk->scene->n_lights > 1 && !walk->features.random_materials)
+      walk_random(walk, 2, pair_of_vertex(walk->vertex, VERTEX_LIGHT));
     walk_random(walk, 3, pair_of_vertex(walk->vertex, VERTEX_EMITTER));
   }
   connect_begin(walk);

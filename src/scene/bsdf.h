@@ -34,7 +34,9 @@ struct bsdf_sample {
 };
 
 struct bsdf_type {
-  bool lambert; // f = x / pi where wo and wi are on one side, sampled by the cosine
+  // f = x / pi where wo and wi are on one side, sampled by the cosine; of the frame it reads n
+  // alone.
+  bool lambert;
   // f(wo, wi) in 1/sr per channel, without delta lobes; wo.z and wi.z are not 0.
   void (*value)(const struct bsdf *, struct vec wo, struct vec wi, enum transport, double f[3]);
   // value depends on the sides of wo and wi alone.
@@ -65,16 +67,21 @@ static inline bool bsdf_is_met(const struct bsdf *b, struct vec local) {
 
 // World space from here on.
 
+// Where only n is read the rest of the frame may be missing.
+static inline struct vec bsdf_local(const struct bsdf *b, struct vec w) {
+  return b->type && b->type->lambert ? vec(0, 0, vec_dot(w, b->n)) : bsdf_to_local(b, w);
+}
+
 static inline void bsdf_value(const struct bsdf *b, struct vec wo, struct vec wi,
                               enum transport transport, double f[3]) {
-  struct vec o = bsdf_to_local(b, wo), i = bsdf_to_local(b, wi);
+  struct vec o = bsdf_local(b, wo), i = bsdf_local(b, wi);
   f[0] = f[1] = f[2] = 0;
   if (bsdf_is_met(b, o) && bsdf_is_met(b, i)) b->type->value(b, o, i, transport, f);
 }
 
 static inline double bsdf_pdf(const struct bsdf *b, struct vec wo, struct vec wi,
                               enum transport transport) {
-  struct vec o = bsdf_to_local(b, wo), i = bsdf_to_local(b, wi);
+  struct vec o = bsdf_local(b, wo), i = bsdf_local(b, wi);
   return bsdf_is_met(b, o) && bsdf_is_met(b, i) ? b->type->pdf(b, o, i, transport) : 0;
 }
 

@@ -66,6 +66,20 @@ static void stop(const struct walk *walk, int j, const struct surface *surface,
   point->footprint = differential_footprint(&walk->differential[j]);
 }
 
+// At a facet that emits nothing.
+static void stop_at_facet(const struct walk *walk, int j, const struct shape *facet, int depth,
+                          struct eye_point *point) {
+  if (walk->vertex >= depth) return;
+  point->hit = true;
+  point->vertex = walk->vertex;
+  point->medium = walk->medium ? walk->medium[j] : MEDIUM_NONE;
+  point->p = walk_point(walk, j);
+  point->primitive = walk->hit[j].primitive;
+  walk_facet_bsdf(walk, j, facet, &point->bsdf);
+  point->wo = vec_scale(walk->ray[j].d, -1);
+  for (int c = 0; c < walk->n_channels; c++) point->weight[c] = walk->throughput[c][j];
+}
+
 // In a medium it ends at the first collision: what the medium scatters there stands for the ray.
 static void stop_in_medium(const struct walk *walk, int j, int depth, struct eye_point *point) {
   const struct collision *collision = &walk->collision[j];
@@ -75,7 +89,7 @@ static void stop_in_medium(const struct walk *walk, int j, int depth, struct eye
   point->hit = point->volume = true;
   point->vertex = walk->vertex;
   point->medium = walk->medium[j];
-  point->p = walk_collision_point(walk, j);
+  point->p = walk_point(walk, j);
   point->primitive = PRIMITIVE_NONE;
   point->bsdf = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
   point->wo = vec_scale(walk->ray[j].d, -1);
@@ -87,6 +101,11 @@ static void stop_in_medium(const struct walk *walk, int j, int depth, struct eye
 static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
   if (walk_collided(walk, j)) {
     stop_in_medium(walk, j, depth, point);
+    return false;
+  }
+  const struct shape *facet = walk_facet_shape(walk, j);
+  if (facet && facet->light == LIGHT_NONE) {
+    stop_at_facet(walk, j, facet, depth, point);
     return false;
   }
   struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
@@ -110,12 +129,23 @@ static void trace_batch(struct walk *walk, int depth, struct eye_point *point) {
     walk_trace_through(walk);
     if (walk->features.background) add_background(walk, point);
     walk_drop_escaped(walk);
-    walk_vertex_random(walk);
+    if (walk->features.random_eye) walk_vertex_random(walk); // else no path goes on
     int alive = 0;
     for (int j = 0; j < walk->n; j++)
       if (meet(walk, j, depth, &point[walk->owner[j]])) walk_move(walk, alive++, j);
     walk->n = alive;
   }
+}
+
+// Most of a point means nothing without a bsdf.
+static void point_clear(struct eye_point *point) {
+  point->hit = point->volume = false;
+  point->medium = MEDIUM_NONE;
+  point->vertex = 0;
+  point->primitive = PRIMITIVE_NONE;
+  point->bsdf.type = NULL;
+  for (int c = 0; c < 3; c++) point->emitted[c] = 0;
+  point->across = point->footprint = 0;
 }
 
 void eye_trace(struct walk *walk, const struct pixel *pixel, int n, bool footprint, int depth,
@@ -124,7 +154,7 @@ void eye_trace(struct walk *walk, const struct pixel *pixel, int n, bool footpri
     int batch = n - first < WALK_BATCH ? n - first : WALK_BATCH;
     for (int j = 0; j < batch; j++) {
       walk->path[j] = eye_path(&walk->scene->camera, pixel[first + j]);
-      point[first + j] = (struct eye_point){0};
+      point_clear(&point[first + j]);
     }
     eye_rays(walk, pixel + first, batch, footprint);
     trace_batch(walk, depth, point + first);

@@ -123,7 +123,7 @@ static void store_passed(struct walk *walk, const struct pass *pass) {
 static void store_in_medium(const struct walk *walk, int j, const struct pass *pass) {
   const struct photon_sink *sink = &pass->to->volume;
   if (!sink->photons) return;
-  int64_t at = store(walk, j, pass, sink, walk_collision_point(walk, j));
+  int64_t at = store(walk, j, pass, sink, walk_point(walk, j));
   for (int c = 0; at >= 0 && c < walk->n_channels; c++)
     sink->photons->flux[c][at] = walk->collision[j].weight[c];
 }
@@ -134,8 +134,8 @@ static bool meet_one(struct walk *walk, int j, const struct pass *pass, bool las
     store_in_medium(walk, j, pass);
     return !last && walk_scatter_in_medium(walk, j);
   }
-  if (walk_facet(walk, j) >= 0) {
-    store_at(walk, j, pass, vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t));
+  if (walk_facet(walk, j)) {
+    store_at(walk, j, pass, walk_point(walk, j));
     return !last && walk_scatter_facet(walk, j);
   }
   struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);

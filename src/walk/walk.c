@@ -210,16 +210,20 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
 }
 
 // ---- facets ----
-static const struct shape *shape_hit(const struct walk *walk, int j) {
-  return &walk->scene->shape[walk->scene->shape_of[walk->hit[j].primitive]];
+const struct shape *walk_facet_shape(const struct walk *walk, int j) {
+  uint32_t primitive = walk->hit[j].primitive;
+  if (primitive == PRIMITIVE_NONE || walk->differential) return NULL;
+  const struct shape *shape = &walk->scene->shape[walk->scene->shape_of[primitive]];
+  bool facet = shape->faceted && shape->bsdf && shape->bsdf->type && shape->bsdf->type->lambert &&
+               shape->inside == shape->outside;
+  return facet ? shape : NULL;
 }
 
-// Differentials need more of a surface than its normal, and a bsdf of it.
-static bool hits_facet(const struct walk *walk, int j) {
-  if (walk->hit[j].primitive == PRIMITIVE_NONE || walk->differential) return false;
-  const struct shape *shape = shape_hit(walk, j);
-  return shape->faceted && shape->bsdf && shape->bsdf->type && shape->bsdf->type->lambert &&
-         shape->inside == shape->outside;
+void walk_facet_bsdf(const struct walk *walk, int j, const struct shape *shape, struct bsdf *bsdf) {
+  bsdf->type = shape->bsdf->type;
+  bsdf->n = bsdf->ng = walk->scene->facet[walk->hit[j].primitive];
+  bsdf->bent = bsdf->volume = false;
+  for (int c = 0; c < 3; c++) bsdf->x[c] = shape->bsdf->x[c];
 }
 
 void walk_sample_facets(struct walk *walk, int first) {
@@ -228,8 +232,10 @@ void walk_sample_facets(struct walk *walk, int first) {
   walk->block.first = first;
   for (int k = 0; k < count; k++) {
     int j = first + k;
+    const struct shape *shape = walk_facet_shape(walk, j);
     walk->block.row[k] = -1;
-    if (!hits_facet(walk, j)) continue;
+    walk->block.shape[k] = shape;
+    if (!shape) continue;
     const struct vec *d = &walk->ray[j].d, *ng = &walk->scene->facet[walk->hit[j].primitive];
     facets->d[0][n] = d->x, facets->d[1][n] = d->y, facets->d[2][n] = d->z;
     facets->n[0][n] = ng->x, facets->n[1][n] = ng->y, facets->n[2][n] = ng->z;
@@ -241,14 +247,14 @@ void walk_sample_facets(struct walk *walk, int first) {
 
 bool walk_scatter_facet(struct walk *walk, int j) {
   const struct facets *facets = &walk->block.facets;
-  int row = walk_facet(walk, j);
-  const double *albedo = shape_hit(walk, j)->bsdf->x;
+  int row = walk->block.row[j - walk->block.first];
+  const double *albedo = walk_facet(walk, j)->bsdf->x;
   double survive = walk_largest(albedo, walk->n_channels);
   if (facets->cosine[row] == 0 || !(walk->u[1][1][j] < survive)) return false;
   double divisor = survive < 1 ? survive : 1;
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= albedo[c] / divisor;
   struct vec wi = {facets->wi[0][row], facets->wi[1][row], facets->wi[2][row]};
-  struct vec p = vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t);
+  struct vec p = walk_point(walk, j);
   walk_start(walk, j, (struct ray){p, wi, INFINITY, walk->hit[j].primitive});
   walk->pdf[j] = facets->pdf[row];
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);
@@ -270,7 +276,7 @@ bool walk_scatter_in_medium(struct walk *walk, int j) {
   phase.type->sample(&phase, vec_scale(walk->ray[j].d, -1), u, walk->transport, &sample);
   for (int c = 0; c < walk->n_channels; c++)
     walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / survive;
-  struct vec p = walk_collision_point(walk, j);
+  struct vec p = walk_point(walk, j);
   walk_start(walk, j, (struct ray){p, sample.wi, INFINITY, PRIMITIVE_NONE});
   walk->pdf[j] = sample.pdf;
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);

@@ -58,7 +58,8 @@ struct walk {
   double *u[4][2]; // scratch: pairs of random numbers
   struct {         // scratch of walk_sample_facets
     int first;
-    int8_t row[FACETS]; // of the block's paths in `facets`; -1: the path has hit something else
+    const struct shape *shape[FACETS]; // walk_facet_shape of the block's paths
+    int8_t row[FACETS];                // of a path that has one in `facets`
     struct facets facets;
   } block;
   struct shadow { // scratch of connect_lights, [WALK_BATCH] each
@@ -124,8 +125,9 @@ static inline bool walk_collided(const struct walk *walk, int j) {
 static inline bool walk_escaped(const struct walk *walk, int j) {
   return walk->hit[j].primitive == PRIMITIVE_NONE && walk->hit[j].t == INFINITY;
 }
-// Where path j has collided.
-static inline struct vec walk_collision_point(const struct walk *walk, int j) {
+
+// Where path j has hit something or collided.
+static inline struct vec walk_point(const struct walk *walk, int j) {
   return vec_along(walk->ray[j].o, walk->ray[j].d, walk->hit[j].t);
 }
 
@@ -147,13 +149,20 @@ void walk_move(struct walk *, int to, int from);
 // False: absorbed. True: ray, from, throughput, pdf and kind are those of the next segment.
 bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsdf *);
 
+// The Lambertian facet that path j has hit, which is met the same at every point; NULL: something
+// else, or a path that carries differentials (they need more of a surface).
+const struct shape *walk_facet_shape(const struct walk *, int j);
+
+// Its scattering; of the frame only n.
+void walk_facet_bsdf(const struct walk *, int j, const struct shape *, struct bsdf *);
+
 // Where up to FACETS paths from `first` on, those that have hit Lambertian facets, are scattered
 // to: u[0] (direction) of each.
 void walk_sample_facets(struct walk *, int first);
 
-// Of a path of the block: the row of its facet; -1: it has hit something else.
-static inline int walk_facet(const struct walk *walk, int j) {
-  return walk->block.row[j - walk->block.first];
+// walk_facet_shape of a path of the block.
+static inline const struct shape *walk_facet(const struct walk *walk, int j) {
+  return walk->block.shape[j - walk->block.first];
 }
 
 // walk_scatter of path j that has hit a facet.
