@@ -40,6 +40,7 @@ static inline struct disc disc_of(const struct kernel *kernel, double c, double 
 struct gather {
   int64_t capacity;
   uint32_t *photon;
+  struct vec *wi;
   double *distance2, *weight, *value[3];
   unsigned left_out; // bits of enum light_path: photons of these count, but bring nothing
 };

@@ -1,39 +1,31 @@
-// The photons at a point whose BSDF depends on sides alone, as that of most does: one dot product
-// a photon.
 #include "density/gather_level.h"
 #include "numeric/lanes.h"
 
-static bool scatters(const double f[3]) { return f[0] != 0 || f[1] != 0 || f[2] != 0; }
-
-// wi . n, rounded as vec_dot does.
-static inline lanes cosine(const struct vec *wi, lanes_mask mine, const uint32_t *photon,
-                           struct vec n) {
-  return lanes_gather(mine, &wi->x, 3, photon) * lanes_of(n.x) +
-         lanes_gather(mine, &wi->y, 3, photon) * lanes_of(n.y) +
-         lanes_gather(mine, &wi->z, 3, photon) * lanes_of(n.z);
-}
-
-static int weigh_by_side(struct gather *gather, const struct photons *photons,
-                         const struct sided_bsdf *bsdf, int n) {
-  lanes_mask above_counts = lanes_first(scatters(bsdf->above) ? LANES : 0);
-  lanes_mask below_counts = lanes_first(scatters(bsdf->below) ? LANES : 0);
-  int kept = 0;
-  for (int j = 0; j < n; j += LANES) {
-    lanes_mask mine = lanes_first(n - j);
-    const uint32_t *photon = gather->photon + j;
-    lanes z = cosine(photons->wi, mine, photon, bsdf->n);
-    lanes_mask above = lanes_less(lanes_of(0), z), below = lanes_less(z, lanes_of(0));
-    lanes_mask keep = lanes_or(lanes_and(above, above_counts), lanes_and(below, below_counts));
-    lanes_pack(keep, gather->distance2 + kept, lanes_load(gather->distance2 + j));
-    for (int c = 0; c < photons->n_channels; c++) {
-      lanes f = lanes_where(above, lanes_of(bsdf->above[c])) +
-                lanes_where(below, lanes_of(bsdf->below[c]));
-      lanes flux = lanes_gather(mine, photons->flux[c], 1, photon);
-      lanes_pack(keep, gather->value[c] + kept, f * flux);
+// One pass over the photons: those that are near and on the side are moved to the front and stored.
+static int find_on_side(const struct grid *grid, const struct grid_range *range, int n,
+                        struct vec p, double r2, const struct sided_bsdf *bsdf, double *distance2,
+                        double *const value[3]) {
+  const double *x = grid->position[0], *y = grid->position[1], *z = grid->position[2];
+  const double *wx = grid->wi[0], *wy = grid->wi[1], *wz = grid->wi[2];
+  const struct vec normal = bsdf->n;
+  const int n_channels = grid->n_channels;
+  int found = 0;
+  for (int k = 0; k < n; k++)
+    for (int64_t j = range[k].begin, end = range[k].end; j < end; j += LANES) {
+      lanes dx = lanes_load(x + j) - lanes_of(p.x), dy = lanes_load(y + j) - lanes_of(p.y),
+            dz = lanes_load(z + j) - lanes_of(p.z);
+      lanes d2 = dx * dx + dy * dy + dz * dz;
+      lanes cosine = lanes_load(wx + j) * lanes_of(normal.x) +
+                     lanes_load(wy + j) * lanes_of(normal.y) +
+                     lanes_load(wz + j) * lanes_of(normal.z);
+      lanes_mask in = lanes_and(lanes_less(d2, lanes_of(r2)), lanes_first((int)(end - j)));
+      in = lanes_and(in, lanes_less(lanes_of(0), cosine));
+      lanes_pack(in, distance2 + found, d2);
+      for (int c = 0; c < n_channels; c++)
+        lanes_pack(in, value[c] + found, lanes_of(bsdf->f[c]) * lanes_load(grid->flux[c] + j));
+      found += lanes_count(in);
     }
-    kept += lanes_count(keep);
-  }
-  return kept;
+  return found;
 }
 
-const struct gather_level LEVEL_NAME(gather_level) = {weigh_by_side};
+const struct gather_level LEVEL_NAME(gather_level) = {find_on_side};

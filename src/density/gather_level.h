@@ -2,19 +2,20 @@
 #ifndef DENSITY_GATHER_LEVEL_H
 #define DENSITY_GATHER_LEVEL_H
 
-#include "base/level.h"
-#include "density/gather.h"
+#include "density/grid_level.h"
 
-// f where wi is on the side of n, and on the other; in the third channel as in the others.
+// Lambert's: f on the side of n, nothing on the other.
 struct sided_bsdf {
   struct vec n;
-  double above[3], below[3];
+  double f[3];
 };
 
 struct gather_level {
-  // Of n found photons those that the point scatters, moved to the front with f * flux of each;
-  // returns how many.
-  int (*weigh_by_side)(struct gather *, const struct photons *, const struct sided_bsdf *, int n);
+  // The photons of n ranges within sqrt(r2) of p that are scattered: their squared distances and
+  // f * flux; returns how many.
+  int (*find_on_side)(const struct grid *, const struct grid_range *, int n, struct vec p,
+                      double r2, const struct sided_bsdf *, double *distance2,
+                      double *const value[3]);
 };
 LEVEL_TABLES(gather_level);
 

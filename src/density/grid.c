@@ -19,15 +19,17 @@ static int64_t cell_coordinate(double x, double inverse_edge) {
   return truncated - (scaled < (double)truncated);
 }
 
-// The cells of a ball, from lo to hi in each coordinate. A point within r of p differs by at most r
-// in each, rounding included: d2 < r2 implies |dx| <= r (1 + 2 eps), so the corners are taken from
-// a box that is wider than that.
+// A point within r of p differs by at most r in each coordinate, rounding included: d2 < r2 implies
+// |dx| <= r (1 + 2 eps), so cells are searched in a box that is wider than that.
+static double widened(double r) { return r * (1 + 4 * DBL_EPSILON); }
+
+// The cells of a ball, from lo to hi in each coordinate.
 struct cells {
   int64_t lo[3], hi[3];
 };
 
 static struct cells cells_around(struct vec p, double r, double inverse_edge) {
-  double reach = r * (1 + 4 * DBL_EPSILON), at[3] = {p.x, p.y, p.z};
+  double reach = widened(r), at[3] = {p.x, p.y, p.z};
   struct cells cells;
   for (int k = 0; k < 3; k++) {
     cells.lo[k] = cell_coordinate(at[k] - reach, inverse_edge);
@@ -60,24 +62,24 @@ static void cell_of(struct vec p, double inverse_edge, int64_t cell[3]) {
 }
 
 // The cells of the photons' box. Cells rise with coordinates, so its corners have them.
-static void grid_bound(struct grid *grid, const struct vec *position, int64_t count) {
-  struct vec lo = {INFINITY, INFINITY, INFINITY}, hi = {-INFINITY, -INFINITY, -INFINITY};
-  for (int64_t j = 0; j < count; j++) {
-    struct vec p = position[j];
-    lo = vec(p.x < lo.x ? p.x : lo.x, p.y < lo.y ? p.y : lo.y, p.z < lo.z ? p.z : lo.z);
-    hi = vec(p.x > hi.x ? p.x : hi.x, p.y > hi.y ? p.y : hi.y, p.z > hi.z ? p.z : hi.z);
+static void find_box(struct grid *grid, const struct vec *position) {
+  double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+  LEVEL_TABLE(grid_level)->bound(position, grid->count, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    grid->lo[k] = cell_coordinate(lo[k], grid->inverse_edge);
+    grid->hi[k] = cell_coordinate(hi[k], grid->inverse_edge);
+    grid->lo_cell[k] = (double)grid->lo[k];
+    grid->hi_cell[k] = (double)grid->hi[k];
   }
-  cell_of(lo, grid->inverse_edge, grid->lo);
-  cell_of(hi, grid->inverse_edge, grid->hi);
 }
 
-// Buckets of their own for all cells of the box, as long as they are not more than the photons (to
-// a power of two); then fewer along its longest side, but 16: a ball of radius r meets at most 11
-// in a row, where cells are as narrow as the spacing of doubles.
-static void grid_shape(struct grid *grid, int64_t count) {
+// Buckets of their own for all cells of the box, as long as they are not more than four times the
+// photons (to a power of two); then fewer along its longest side, but 16: a ball of radius r meets
+// at most 11 in a row, where cells are as narrow as the spacing of doubles.
+static void choose_buckets(struct grid *grid) {
   enum { LEAST_BITS = 4 };
   int most = 3 * LEAST_BITS;
-  while (INT64_C(1) << most < count) most++;
+  while (INT64_C(1) << most < 4 * grid->count) most++;
   for (int k = 0; k < 3; k++) {
     uint64_t cells = (uint64_t)(grid->hi[k] - grid->lo[k]) + 1;
     for (grid->bits[k] = 0; grid->bits[k] < most && UINT64_C(1) << grid->bits[k] < cells;)
@@ -99,17 +101,19 @@ static uint32_t row_of(const struct grid *grid, int64_t y, int64_t z) {
   return (wrap(grid, 2, z) << grid->bits[1] | wrap(grid, 1, y)) << grid->bits[0];
 }
 
-static void reserve_photons(struct grid *grid, int64_t count, int n_channels, struct arena *arena) {
-  struct photons *sorted = &grid->sorted;
+static void reserve_photons(struct grid *grid, int64_t count, struct arena *arena) {
+  if (count <= grid->capacity) return;
   grid->capacity = 2 * count;
-  for (int k = 0; k < 3; k++)
-    grid->position[k] = arena_new(arena, double, grid->capacity + GRID_ROOM);
-  grid->photon = arena_new(arena, uint32_t, grid->capacity);
-  grid->bucket = arena_new(arena, uint32_t, grid->capacity);
-  sorted->wi = arena_new(arena, struct vec, grid->capacity);
-  sorted->vertex = arena_new(arena, uint16_t, grid->capacity);
-  sorted->kind = arena_new(arena, uint8_t, grid->capacity);
-  for (int c = 0; c < n_channels; c++) sorted->flux[c] = arena_new(arena, double, grid->capacity);
+  int64_t room = grid->capacity + GRID_ROOM;
+  for (int k = 0; k < 3; k++) {
+    grid->position[k] = arena_new(arena, double, room);
+    grid->wi[k] = arena_new(arena, double, room);
+    if (k < grid->n_channels) grid->flux[k] = arena_new(arena, double, room);
+  }
+  grid->vertex = arena_new(arena, uint16_t, room);
+  grid->kind = arena_new(arena, uint8_t, room);
+  grid->photon = arena_new(arena, uint32_t, room);
+  grid->bucket = arena_new(arena, uint32_t, room);
 }
 
 static void reserve_buckets(struct grid *grid, struct arena *arena) {
@@ -118,45 +122,60 @@ static void reserve_buckets(struct grid *grid, struct arena *arena) {
   grid->first = arena_new(arena, uint32_t, grid->bucket_capacity + 1);
 }
 
-// How many photons each bucket has, in first[].
-static void count_photons(struct grid *grid, const struct vec *position) {
-  memset(grid->first, 0, ((size_t)grid_buckets(grid) + 1) * sizeof *grid->first);
+// Whether the box's cells can be told apart in 31 bits each way, and in doubles.
+static bool is_narrow(const struct grid *grid) {
+  for (int k = 0; k < 3; k++)
+    if (grid->lo[k] < -(INT64_C(1) << 51) || grid->hi[k] > INT64_C(1) << 51 ||
+        grid->hi[k] - grid->lo[k] >= INT64_C(1) << 31)
+      return false;
+  return true;
+}
+
+static void find_buckets(struct grid *grid, const struct vec *position) {
+  if (is_narrow(grid)) {
+    LEVEL_TABLE(grid_level)->buckets(grid, position, grid->count, grid->bucket);
+    return;
+  }
   for (int64_t j = 0; j < grid->count; j++) {
     int64_t cell[3];
     cell_of(position[j], grid->inverse_edge, cell);
     grid->bucket[j] = row_of(grid, cell[1], cell[2]) + wrap(grid, 0, cell[0]);
-    grid->first[grid->bucket[j]]++;
   }
 }
 
 // Each bucket is filled from its end backwards: stable.
-static void order_photons(struct grid *grid) {
+static void sort_numbers(struct grid *grid) {
   uint32_t *first = grid->first, buckets = (uint32_t)grid_buckets(grid), sum = 0;
+  memset(first, 0, (size_t)buckets * sizeof *first);
+  for (int64_t j = 0; j < grid->count; j++) first[grid->bucket[j]]++;
   for (uint32_t b = 0; b < buckets; b++) first[b] = sum += first[b];
   first[buckets] = sum;
   for (int64_t j = grid->count - 1; j >= 0; j--)
     grid->photon[--first[grid->bucket[j]]] = (uint32_t)j;
 }
 
+static void copy_vectors(const struct grid *grid, const struct vec *from, double *to[3]) {
+  for (int64_t j = 0; from && j < grid->count; j++) {
+    struct vec a = from[grid->photon[j]];
+    to[0][j] = a.x;
+    to[1][j] = a.y;
+    to[2][j] = a.z;
+  }
+}
+
 // Reads at random and writes in order: the other way round takes three times as long.
 static void copy_photons(struct grid *grid, const struct photons *photons) {
-  struct photons *sorted = &grid->sorted;
   const uint32_t *photon = grid->photon;
   int64_t n = grid->count;
-  for (int64_t j = 0; j < n; j++) {
-    struct vec p = photons->position[photon[j]];
-    grid->position[0][j] = p.x;
-    grid->position[1][j] = p.y;
-    grid->position[2][j] = p.z;
-  }
-  for (int64_t j = 0; j < n && photons->wi; j++) sorted->wi[j] = photons->wi[photon[j]];
-  for (int c = 0; c < photons->n_channels; c++)
-    for (int64_t j = 0; j < n; j++) sorted->flux[c][j] = photons->flux[c][photon[j]];
-  for (int64_t j = 0; j < n && photons->kind; j++) sorted->kind[j] = photons->kind[photon[j]];
+  copy_vectors(grid, photons->position, grid->position);
+  copy_vectors(grid, photons->wi, grid->wi);
+  for (int c = 0; c < grid->n_channels; c++)
+    for (int64_t j = 0; j < n; j++) grid->flux[c][j] = photons->flux[c][photon[j]];
+  for (int64_t j = 0; photons->kind && j < n; j++) grid->kind[j] = photons->kind[photon[j]];
   grid->deepest = 0;
-  for (int64_t j = 0; j < n && photons->vertex; j++) {
-    uint16_t vertex = photons->vertex[photon[j]];
-    sorted->vertex[j] = vertex;
+  for (int64_t j = 0; photons->vertex && j < n; j++) {
+    int vertex = photons->vertex[photon[j]];
+    grid->vertex[j] = (uint16_t)vertex;
     grid->deepest = grid->deepest < vertex ? vertex : grid->deepest;
   }
 }
@@ -165,28 +184,33 @@ void grid_build(struct grid *grid, const struct photons *photons, double r, stru
   assert(photons->count < UINT32_MAX);
   grid->r = r;
   grid->inverse_edge = 1 / r;
-  grid->count = grid->sorted.count = photons->count;
-  grid->sorted.n_channels = photons->n_channels;
-  if (grid->count > grid->capacity)
-    reserve_photons(grid, photons->count, photons->n_channels, arena);
-  grid_bound(grid, photons->position, photons->count);
-  grid_shape(grid, photons->count);
+  grid->count = photons->count;
+  grid->n_channels = photons->n_channels;
+  reserve_photons(grid, photons->count, arena);
+  find_box(grid, photons->position);
+  choose_buckets(grid);
   reserve_buckets(grid, arena);
-  count_photons(grid, photons->position);
-  order_photons(grid);
+  find_buckets(grid, photons->position);
+  sort_numbers(grid);
   copy_photons(grid, photons);
 }
 
-// Cells lo..hi of a ball that are in the photons' box.
-static struct cells cells_within(const struct grid *grid, struct cells cells) {
-  for (int k = 0; k < 3; k++) {
-    if (cells.lo[k] < grid->lo[k]) cells.lo[k] = grid->lo[k];
-    if (cells.hi[k] > grid->hi[k]) cells.hi[k] = grid->hi[k];
-  }
-  return cells;
+static int64_t floor_of(double x) {
+  int64_t truncated = (int64_t)x;
+  return truncated - (x < (double)truncated);
 }
 
-enum { MOST_RANGES = 2 * 16 * 16 };
+// Of the box's cells along axis k those from x - reach to x + reach, at least one: the bucket of
+// the first and how many.
+static uint32_t cells_along(const struct grid *grid, int k, double x, double reach, uint32_t *n) {
+  double lo = (x - reach) * grid->inverse_edge, hi = (x + reach) * grid->inverse_edge;
+  double first = grid->lo_cell[k], last = grid->hi_cell[k];
+  lo = lo > first ? lo : first;
+  hi = hi > first ? hi : first;
+  int64_t begin = floor_of(lo < last ? lo : last);
+  *n = (uint32_t)(floor_of(hi < last ? hi : last) - begin) + 1;
+  return wrap(grid, k, begin);
+}
 
 static int add_range(const struct grid *grid, uint32_t begin, uint32_t end,
                      struct grid_range *range) {
@@ -194,30 +218,29 @@ static int add_range(const struct grid *grid, uint32_t begin, uint32_t end,
   return range->begin < range->end;
 }
 
-// Where the photons of the cells are; neighbours along x are one range, two around a corner.
-static int ranges_of(const struct grid *grid, struct cells cells,
-                     struct grid_range range[MOST_RANGES]) {
-  int n = 0;
-  uint32_t begin = wrap(grid, 0, cells.lo[0]), end = wrap(grid, 0, cells.hi[0]) + 1;
-  if (cells.lo[0] > cells.hi[0]) return 0;
-  for (int64_t z = cells.lo[2]; z <= cells.hi[2]; z++)
-    for (int64_t y = cells.lo[1]; y <= cells.hi[1]; y++) {
-      uint32_t row = row_of(grid, y, z);
-      if (begin < end) {
-        n += add_range(grid, row + begin, row + end, &range[n]);
-        continue;
-      }
-      n += add_range(grid, row + begin, row + (1u << grid->bits[0]), &range[n]);
-      n += add_range(grid, row, row + end, &range[n]);
+// Neighbours along x are one range, two around a corner.
+int grid_ranges(const struct grid *grid, struct vec p, double r,
+                struct grid_range range[GRID_RANGES]) {
+  double reach = widened(r);
+  uint32_t n[3], x = cells_along(grid, 0, p.x, reach, &n[0]),
+                 y = cells_along(grid, 1, p.y, reach, &n[1]),
+                 z = cells_along(grid, 2, p.z, reach, &n[2]);
+  uint32_t row_length = 1u << grid->bits[0], rest = x + n[0] > row_length ? row_length - x : n[0];
+  uint32_t y_mask = (1u << grid->bits[1]) - 1, z_mask = (1u << grid->bits[2]) - 1;
+  int found = 0;
+  for (uint32_t k = 0; k < n[2]; k++)
+    for (uint32_t j = 0; j < n[1]; j++) {
+      uint32_t row = (((z + k) & z_mask) << grid->bits[1] | ((y + j) & y_mask)) << grid->bits[0];
+      found += add_range(grid, row + x, row + x + rest, &range[found]);
+      if (rest < n[0]) found += add_range(grid, row, row + n[0] - rest, &range[found]);
     }
-  return n;
+  return found;
 }
 
 int grid_find(const struct grid *grid, struct vec p, double r, uint32_t *at, double *distance2) {
+  struct grid_range range[GRID_RANGES];
   if (grid->count == 0) return 0;
-  struct cells near = cells_within(grid, cells_around(p, r, grid->inverse_edge));
-  struct grid_range range[MOST_RANGES];
-  int n = ranges_of(grid, near, range);
+  int n = grid_ranges(grid, p, r, range);
   return LEVEL_TABLE(grid_level)->within(grid, range, n, p, r * r, at, distance2);
 }
 

@@ -14,15 +14,19 @@
 
 struct grid {
   double r, inverse_edge;
-  int deepest;          // of their photons->vertex
-  int64_t lo[3], hi[3]; // cells of the photons' box
-  int bits[3];          // X = 1 << bits[0], ...
-  uint32_t *first;      // [X Y Z + 1] of each bucket's photons; x varies fastest
+  int n_channels;
+  int deepest;                   // of their vertex[]
+  int64_t lo[3], hi[3];          // cells of the photons' box
+  double lo_cell[3], hi_cell[3]; // the same
+  int bits[3];                   // X = 1 << bits[0], ...
+  uint32_t *first;               // [X Y Z + 1] of each bucket's photons; x varies fastest
   int64_t count, capacity, bucket_capacity;
-  double *position[3];   // sorted; GRID_ROOM more than there are photons
-  struct photons sorted; // the same photons, without positions
-  uint32_t *photon;      // their numbers before
-  uint32_t *bucket;      // scratch: by photon
+  // Sorted; GRID_ROOM more than there are photons.
+  double *position[3], *wi[3], *flux[3];
+  uint16_t *vertex;
+  uint8_t *kind;
+  uint32_t *photon; // their numbers before
+  uint32_t *bucket; // scratch: by photon
 };
 
 // Whether r is resolved in a scene within these bounds: at least 100 times the spacing of floats at
@@ -45,9 +49,9 @@ static inline int64_t grid_buckets(const struct grid *grid) {
 
 // Of what it holds.
 static inline int64_t grid_bytes(const struct grid *grid) {
-  return grid->count * (int64_t)(3 * sizeof(double) + 2 * sizeof(uint32_t)) +
-         photons_bytes(&grid->sorted) - grid->count * (int64_t)sizeof(struct vec) +
-         (grid_buckets(grid) + 1) * (int64_t)sizeof(uint32_t);
+  size_t photon = (size_t)(6 + grid->n_channels) * sizeof(double) + 2 * sizeof(uint32_t) +
+                  sizeof(uint16_t) + sizeof(uint8_t);
+  return grid->count * (int64_t)photon + (grid_buckets(grid) + 1) * (int64_t)sizeof(uint32_t);
 }
 
 // The cells that the ball of radius r around any of n points meets, as a filter for photons_trace.

@@ -16,6 +16,7 @@
 enum { LANES = 8 };
 typedef __m512d lanes;
 typedef __mmask8 lanes_mask;
+typedef uint32_t lanes_numbers __attribute__((vector_size(4 * LANES)));
 
 static inline lanes lanes_load(const double *x) { return _mm512_loadu_pd(x); }
 static inline void lanes_store(double *x, lanes a) { _mm512_storeu_pd(x, a); }
@@ -23,6 +24,14 @@ static inline lanes lanes_of(double x) { return _mm512_set1_pd(x); }
 static inline lanes lanes_sqrt(lanes a) { return _mm512_sqrt_pd(a); }
 static inline lanes lanes_truncate(lanes a) {
   return _mm512_roundscale_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_floor(lanes a) {
+  return _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_min(lanes a, lanes b) { return _mm512_min_pd(a, b); }
+static inline lanes lanes_max(lanes a, lanes b) { return _mm512_max_pd(a, b); }
+static inline lanes_numbers lanes_to_numbers(lanes a) {
+  return (lanes_numbers)_mm512_cvttpd_epi32(a);
 }
 static inline lanes lanes_power_of_two(lanes k) {
   __m512i low = _mm512_castpd_si512(k + (0x1p52 + 1023));
@@ -46,11 +55,16 @@ static inline lanes lanes_load_where(lanes_mask mask, const double *x) {
 static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
   _mm512_mask_storeu_pd(x, mask, a);
 }
-static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
-                                 const uint32_t *index) {
-  __m512i at = _mm512_cvtepu32_epi64(_mm256_loadu_si256((const __m256i *)index));
-  at = stride == 1 ? at : _mm512_mul_epu32(at, _mm512_set1_epi64(stride));
-  return _mm512_mask_i64gather_pd(_mm512_setzero_pd(), mask, at, x, sizeof *x);
+static inline void lanes_load_triples(const double *x, lanes a[3]) {
+  static const int64_t two[3][8] = {
+      {0, 3, 6, 9, 12, 15, 0, 0}, {1, 4, 7, 10, 13, 0, 0, 0}, {2, 5, 8, 11, 14, 0, 0, 0}};
+  static const int64_t three[3][8] = {
+      {0, 1, 2, 3, 4, 5, 10, 13}, {0, 1, 2, 3, 4, 8, 11, 14}, {0, 1, 2, 3, 4, 9, 12, 15}};
+  __m512d first = lanes_load(x), second = lanes_load(x + 8), third = lanes_load(x + 16);
+  for (int c = 0; c < 3; c++) {
+    __m512d begin = _mm512_permutex2var_pd(first, _mm512_loadu_si512(two[c]), second);
+    a[c] = _mm512_permutex2var_pd(begin, _mm512_loadu_si512(three[c]), third);
+  }
 }
 static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
   _mm512_storeu_pd(x, _mm512_maskz_compress_pd(mask, a));
@@ -66,6 +80,7 @@ static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t fr
 enum { LANES = 4 };
 typedef __m256d lanes;
 typedef __m256d lanes_mask;
+typedef uint32_t lanes_numbers __attribute__((vector_size(4 * LANES)));
 
 static inline lanes lanes_load(const double *x) { return _mm256_loadu_pd(x); }
 static inline void lanes_store(double *x, lanes a) { _mm256_storeu_pd(x, a); }
@@ -73,6 +88,14 @@ static inline lanes lanes_of(double x) { return _mm256_set1_pd(x); }
 static inline lanes lanes_sqrt(lanes a) { return _mm256_sqrt_pd(a); }
 static inline lanes lanes_truncate(lanes a) {
   return _mm256_round_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_floor(lanes a) {
+  return _mm256_round_pd(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+static inline lanes lanes_min(lanes a, lanes b) { return _mm256_min_pd(a, b); }
+static inline lanes lanes_max(lanes a, lanes b) { return _mm256_max_pd(a, b); }
+static inline lanes_numbers lanes_to_numbers(lanes a) {
+  return (lanes_numbers)_mm256_cvttpd_epi32(a);
 }
 static inline lanes lanes_power_of_two(lanes k) {
   __m256i low = _mm256_castpd_si256(k + (0x1p52 + 1023));
@@ -96,11 +119,14 @@ static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
   _mm256_maskstore_pd(x, _mm256_castpd_si256(mask), a);
 }
 
-static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
-                                 const uint32_t *index) {
-  __m256i at = _mm256_cvtepu32_epi64(_mm_loadu_si128((const __m128i *)index));
-  at = stride == 1 ? at : _mm256_mul_epu32(at, _mm256_set1_epi64x(stride));
-  return _mm256_mask_i64gather_pd(_mm256_setzero_pd(), x, at, mask, sizeof *x);
+static inline void lanes_load_triples(const double *x, lanes a[3]) {
+  __m256d first = lanes_load(x), second = lanes_load(x + 4), third = lanes_load(x + 8);
+  __m256d xy = _mm256_blend_pd(first, second, 0xc);        // x0 y0 x2 y2
+  __m256d zx = _mm256_permute2f128_pd(first, third, 0x21); // z0 x1 z2 x3
+  __m256d yz = _mm256_blend_pd(second, third, 0xc);        // y1 z1 y3 z3
+  a[0] = _mm256_shuffle_pd(xy, zx, 0xa);
+  a[1] = _mm256_shuffle_pd(xy, yz, 0x5);
+  a[2] = _mm256_shuffle_pd(zx, yz, 0xa);
 }
 
 // Which halves of doubles go to the front, by the mask's bits.
@@ -144,12 +170,21 @@ static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t fr
 enum { LANES = 1 };
 typedef double lanes;
 typedef bool lanes_mask;
+typedef uint32_t lanes_numbers;
 
 static inline lanes lanes_load(const double *x) { return *x; }
 static inline void lanes_store(double *x, lanes a) { *x = a; }
 static inline lanes lanes_of(double x) { return x; }
 static inline lanes lanes_sqrt(lanes a) { return sqrt(a); }
 static inline lanes lanes_truncate(lanes a) { return (double)(int)a; } // |a| < 2^31
+static inline lanes lanes_floor(lanes a) {                             // |a| < 2^63
+  double truncated = (double)(int64_t)a;
+  return truncated - (a < truncated);
+}
+// b where either is NaN.
+static inline lanes lanes_min(lanes a, lanes b) { return a < b ? a : b; }
+static inline lanes lanes_max(lanes a, lanes b) { return a > b ? a : b; }
+static inline lanes_numbers lanes_to_numbers(lanes a) { return (uint32_t)a; } // 0 <= a < 2^31
 // 2^k of whole numbers -1022 <= k <= 1023.
 static inline lanes lanes_power_of_two(lanes k) {
   uint64_t bits = (uint64_t)((int)k + 1023) << 52;
@@ -170,10 +205,9 @@ static inline lanes lanes_load_where(lanes_mask mask, const double *x) { return 
 static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
   if (mask) *x = a;
 }
-// x[stride * index[l]] in lane l; up to LANES numbers are read, whatever the mask.
-static inline lanes lanes_gather(lanes_mask mask, const double *x, int stride,
-                                 const uint32_t *index) {
-  return mask ? x[(size_t)stride * *index] : 0;
+// x[0], x[3], ...; x[1], x[4], ...; x[2], x[5], ...
+static inline void lanes_load_triples(const double *x, lanes a[3]) {
+  for (int c = 0; c < 3; c++) a[c] = x[c];
 }
 // Those where the mask is set, to x[0], x[1], ...; what is behind them, up to LANES, is lost.
 static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
