@@ -18,6 +18,7 @@ static void *path_new(const struct measurement *measure, struct arena *arena) {
   struct path *state = arena_new(arena, struct path, 1);
   state->measure = measure;
   state->walk = walk_new(measure->scene, measure->bvh, measure->features, arena);
+  walk_delay_roulette(state->walk, arena);
   return state;
 }
 

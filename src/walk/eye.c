@@ -30,6 +30,7 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
       walk->differential[j] = differential_of_camera(camera, x, y, lens ? u : NULL);
     walk->owner[j] = j;
     walk->pdf[j] = 0;
+    if (walk->owed) walk->owed[j] = 1;
     walk->kind[j] = LIGHT_PATH_EMITTED;
     if (walk->medium) walk->medium[j] = walk->scene->camera_medium;
     for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] = 1;

@@ -99,6 +99,7 @@ void walk_move(struct walk *walk, int to, int from) {
     walk->medium[to] = walk->medium[from];
     walk->collision[to] = walk->collision[from];
   }
+  if (walk->owed) walk->owed[to] = walk->owed[from];
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
 }
 
@@ -187,16 +188,34 @@ struct bsdf walk_bsdf(const struct walk *walk, int j, const struct surface *surf
   return surface_bsdf(walk->scene, surface, walk->features.random_materials ? walk->u[2][1][j] : 0);
 }
 
+// Roulette with u[1][1] of path j, whose weight its last scattering multiplies by up to `weight`.
+// True: it goes on, its weight divided by *divisor. A weight above 1 always survives and is kept.
+static bool survives(struct walk *walk, int j, double weight, double *divisor) {
+  *divisor = 1;
+  if (walk->owed) {
+    weight *= walk->owed[j];
+    walk->owed[j] = weight;
+    if (walk->vertex == 0) return weight > 0;
+  }
+  if (!(walk->u[1][1][j] < weight)) return false;
+  if (weight < 1) *divisor = weight;
+  if (walk->owed && weight < 1) walk->owed[j] = 1;
+  return true;
+}
+
+void walk_delay_roulette(struct walk *walk, struct arena *arena) {
+  walk->owed = arena_new(arena, double, WALK_BATCH);
+}
+
 bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
                   const struct bsdf *bsdf) {
   double u[3] = {walk->u[0][0][j], walk->u[0][1][j], walk->u[1][0][j]};
   struct bsdf_sample sample;
   struct vec wo = vec_scale(walk->ray[j].d, -1);
   if (!bsdf_sample(bsdf, wo, u, walk->transport, &sample)) return false;
-  double survive = walk_largest(sample.weight, walk->n_channels) * sample.eta2;
-  if (!(walk->u[1][1][j] < survive)) return false;
-  // A weight above 1 always survives and keeps its weight.
-  double divisor = survive < 1 ? survive : 1;
+  double divisor;
+  if (!survives(walk, j, walk_largest(sample.weight, walk->n_channels) * sample.eta2, &divisor))
+    return false;
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= sample.weight[c] / divisor;
   if (walk->differential && walk->transport == TRANSPORT_RADIANCE)
     differential_scatter(&walk->differential[j], walk->scene, surface, bsdf->n, walk->ray[j].d,
@@ -249,9 +268,10 @@ bool walk_scatter_facet(struct walk *walk, int j) {
   const struct facets *facets = &walk->block.facets;
   int row = walk->block.row[j - walk->block.first];
   const double *albedo = walk_facet(walk, j)->bsdf->x;
-  double survive = walk_largest(albedo, walk->n_channels);
-  if (facets->cosine[row] == 0 || !(walk->u[1][1][j] < survive)) return false;
-  double divisor = survive < 1 ? survive : 1;
+  double divisor;
+  if (facets->cosine[row] == 0 ||
+      !survives(walk, j, walk_largest(albedo, walk->n_channels), &divisor))
+    return false;
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= albedo[c] / divisor;
   struct vec wi = {facets->wi[0][row], facets->wi[1][row], facets->wi[2][row]};
   struct vec p = walk_point(walk, j);
@@ -269,13 +289,13 @@ bool walk_scatter_in_medium(struct walk *walk, int j) {
     double sigma_t = at->sigma_a[c] + at->sigma_s[c];
     albedo[c] = sigma_t > 0 ? at->sigma_s[c] / sigma_t : 0;
   }
-  double survive = walk_largest(albedo, walk->n_channels);
-  if (!(walk->u[1][1][j] < survive)) return false;
+  double divisor;
+  if (!survives(walk, j, walk_largest(albedo, walk->n_channels), &divisor)) return false;
   struct bsdf phase = medium_bsdf(&walk->scene->medium[walk->medium[j]]);
   struct bsdf_sample sample;
   phase.type->sample(&phase, vec_scale(walk->ray[j].d, -1), u, walk->transport, &sample);
   for (int c = 0; c < walk->n_channels; c++)
-    walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / survive;
+    walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / divisor;
   struct vec p = walk_point(walk, j);
   walk_start(walk, j, (struct ray){p, sample.wi, INFINITY, PRIMITIVE_NONE});
   walk->pdf[j] = sample.pdf;

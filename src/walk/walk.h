@@ -39,7 +39,8 @@ struct walk {
   double *throughput[3]; // photons: flux [W]; eye paths: weight of what is met next
   double *pdf;           // solid angle pdf of ray.d by the last scattering; 0: next-event
                          // estimation cannot find what it meets (delta lobe, camera)
-  int *owner;            // eye paths: the point this path belongs to
+  double *owed; // [n] what roulette has not yet taken of the weight; NULL: it takes at once
+  int *owner;   // eye paths: the point this path belongs to
   struct differential *differential; // [n] of eye paths; NULL: nobody asks
   uint8_t *kind; // enum light_path: what an emitter (photons: an eye) here completes
   // Only where there are media, else NULL.
@@ -96,6 +97,10 @@ struct walk *walk_new(const struct scene *, const struct bvh *, struct features,
 
 // From now on eye paths carry their differentials.
 void walk_follow_differentials(struct walk *, struct arena *);
+
+// From now on paths meet roulette from their second scattering on, with what both leave of their
+// weight: as in pbrt-v4, so that what lies near the eye is not left out.
+void walk_delay_roulette(struct walk *, struct arena *);
 
 // Begins iteration i of a run: where things move, at its time, which eye and photon paths share.
 void walk_begin(struct walk *, uint64_t seed, uint64_t run, uint64_t i);
