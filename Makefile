@@ -329,7 +329,7 @@ endef
 
 .PHONY: $(experiments) paper-figures
 $(experiments): experiment-%: $(binary)
-	$(if $(wildcard experiments/$*.sh),experiments/$*.sh $(binary) $(RESULTS) $(QUALITY),$(run_fit_plot))
+	$(if $(wildcard experiments/$*.sh),$(folders) experiments/$*.sh $(binary) $(RESULTS) $(QUALITY),$(run_fit_plot))
 
 # One after the other, each by all threads; those after one that fails are still made.
 figures_of = $(if $(filter command,$(origin RESULTS)),$(RESULTS),results)

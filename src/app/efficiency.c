@@ -132,28 +132,37 @@ static void print_methods(const struct field *field) {
   }
 }
 
-// Returns whether the two change places.
-static bool print_crossovers(const struct method *a, const struct method *b) {
+// Returns how many leads there are.
+static int print_crossovers(const struct method *a, const struct method *b) {
   struct pace_lead lead[PACE_LEADS];
   int n = pace_leads(&a->pace, &b->pace, lead);
   for (int k = 1; k < n; k++)
     printf("  %s passes %s at %.3g s, between %.3g and %.3g\n", ahead_name(a, b, lead[k].ahead),
            ahead_name(a, b, !lead[k].ahead), lead[k].crossed_s, lead[k - 1].to_s, lead[k].from_s);
-  return n > 1;
+  return n;
+}
+
+static void print_reference(const struct field *field) {
+  const struct reference_image *reference = &field->reference;
+  printf("%s: reference by %s, %" PRIu64 " runs, its own relmse %.2g of noise", field->scene,
+         field->truth->integrator->name, field->truth->runs, reference->noise);
+  if (reference->bias > 0) printf(", at most %.2g of bias", reference->bias);
+  putchar('\n');
 }
 
 static void print_field(const struct field *field) {
-  const struct reference_image *reference = &field->reference;
-  int crossed = 0, pairs = field->n_methods * (field->n_methods - 1) / 2;
-  printf("%s: reference by %s, %" PRIu64 " runs, its own relmse %.2g of noise", field->scene,
-         field->truth->integrator->name, field->truth->runs, reference->noise);
-  printf(reference->bias > 0 ? ", at most %.2g of bias\n" : "\n", reference->bias);
+  int one_lead = 0, none = 0;
+  print_reference(field);
   print_methods(field);
   for (int i = 0; i < field->n_methods; i++)
-    for (int j = i + 1; j < field->n_methods; j++)
-      crossed += print_crossovers(&field->method[i], &field->method[j]);
-  printf("  none within the range: the other %d of %d pairs (leads.csv)\n\n", pairs - crossed,
-         pairs);
+    for (int j = i + 1; j < field->n_methods; j++) {
+      int n = print_crossovers(&field->method[i], &field->method[j]);
+      one_lead += n == 1;
+      none += n == 0;
+    }
+  printf("  of the other pairs %d do not change places within the range, %d cannot be told apart "
+         "(leads.csv)\n\n",
+         one_lead, none);
 }
 
 static int efficiency(struct cli *cli, struct problem *problem) {

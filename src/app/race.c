@@ -85,6 +85,7 @@ static bool check_truth(const struct cell *const *cell, int n, const char *scene
   for (int k = 0; k < n && fixed; k++)
     fixed = cell[k]->integrator->photons && !strcmp(cell[k]->law->name, "fixed") &&
             cell[k]->radius == cell[0]->radius * (1 << k) &&
+            cell[k]->radius_volume == cell[0]->radius_volume * (1 << k) &&
             cell[k]->seed != cell[(k + 1) % 3]->seed; // or their photons were the same
   return fixed || problem_set(problem,
                               "%s: a reference is one cell of several runs without bias, or three "
@@ -236,7 +237,7 @@ static bool read_method(const struct results *results, const struct field *field
 static double last_common(const struct field *field) {
   struct pace_span span, all = {0, INFINITY};
   for (int m = 0; m < field->n_methods; m++) {
-    if (!pace_span(&field->method[m].pace, &span)) continue;
+    if (!pace_span(&field->method[m].pace, &span)) return NAN;
     all.from_s = fmax(all.from_s, span.from_s);
     all.to_s = fmin(all.to_s, span.to_s);
   }

@@ -24,7 +24,8 @@ struct field {
   struct reference_image reference;
   int n_methods;
   struct method *method;
-  double last_s; // the last time that all methods have reached; NAN: there is none
+  double last_s; // the last time that all methods have reached; NAN: there is none, as where a
+                 // method has no point that counts
 };
 
 struct race {
