@@ -8,13 +8,14 @@ endif
 SHELL = /bin/sh
 
 # ---- what the user may set ----
-BUILD = release# release | debug | asan | tsan | fuzz | coverage
+BUILD = release# release | debug | asan | tsan | fuzz | coverage | aarch64
 OPT.release = -O2
 OPT.debug = -Og
 OPT.asan = -O1
 OPT.tsan = -O1
 OPT.fuzz = -O1
 OPT.coverage = -O1
+OPT.aarch64 = -O2
 OPT = $(OPT.$(BUILD))
 CFLAGS_EXTRA =
 INSTALL = yes# no: never call apt-get
@@ -23,12 +24,14 @@ PREFIX = /usr/local
 DESTDIR =
 V =# 1 shows the commands
 
+aarch64_root := build/aarch64-root# Debian's packages for it (tests/aarch64/root)
+aarch64_gcc := aarch64-linux-gnu-gcc --sysroot=$(aarch64_root)
 ifneq ($(filter default undefined,$(origin CC)),)
-CC := $(if $(filter tsan fuzz coverage,$(BUILD)),clang,gcc)
+CC := $(if $(filter tsan fuzz coverage,$(BUILD)),clang,$(if $(filter aarch64,$(BUILD)),$(aarch64_gcc),gcc))
 endif
 AR = ar
-ifeq ($(filter $(BUILD),release debug asan tsan fuzz coverage),)
-$(error BUILD=$(BUILD): one of release, debug, asan, tsan, fuzz, coverage)
+ifeq ($(filter $(BUILD),release debug asan tsan fuzz coverage aarch64),)
+$(error BUILD=$(BUILD): one of release, debug, asan, tsan, fuzz, coverage, aarch64)
 endif
 
 # ---- flags ----
@@ -101,6 +104,15 @@ $(packages_build): build/packages/$(cc_name).%: packages install-packages
 $(packages_test): packages install-packages | $(packages_build)
 	@CC="$(CC)" INSTALL="$(INSTALL)" ./install-packages test
 	@touch $@
+
+ifeq ($(BUILD),aarch64)
+packages_build := $(aarch64_root)/ready
+packages_test := $(packages_build)
+$(packages_build): packages install-packages tests/aarch64/root
+	@CC=cc INSTALL="$(INSTALL)" ./install-packages cross
+	@tests/aarch64/root $(@D)
+	@touch $@
+endif
 
 # ---- generated: flags, list of objects, slots, version ----
 $(gen):
@@ -261,8 +273,27 @@ long_programs := $(long_tests:tests/%.c=$(out)/tests/%)
 test-long: $(long_programs)
 	@TEST_LONG=1 TIME_LIMIT_S=3600 tests/run $(long_programs)
 
-test-bits: $(binary)
-	@TIME_LIMIT_S=900 PHOTONLAB=$(binary) tests/run tests/bits
+unit_programs := $(filter $(out)/tests/unit/%,$(test_programs))
+.PHONY: unit-programs test-aarch64
+unit-programs: $(unit_programs)
+
+test-bits: $(binary) $(unit_programs)
+	@TIME_LIMIT_S=1800 PHOTONLAB=$(binary) UNIT_PROGRAMS="$(unit_programs)" tests/run tests/bits
+
+# aarch64 and an x86-64 without AVX, emulated. Pages that are reserved cost the emulator time and memory.
+emulated = CFLAGS_EXTRA='$(CFLAGS_EXTRA) -DRESERVE_BITS=28'
+aarch64 = $(MAKE) BUILD=aarch64 $(emulated) CC=
+
+test-aarch64: $(binary)
+	@$(aarch64)'$(aarch64_gcc)' $(aarch64_root)/ready || \
+	  { echo '0 passed, 0 failed: skipped, the packages for aarch64 are not to be had'; exit; }; \
+	$(aarch64)'$(aarch64_gcc)' all unit-programs && \
+	{ ! command -v clang >/dev/null || \
+	  $(aarch64)'clang --target=aarch64-linux-gnu --sysroot=$(aarch64_root)' out=build/aarch64-clang; } && \
+	$(MAKE) out=build/x86-64 binary=build/x86-64/photonlab $(emulated) && \
+	EMULATOR=qemu-aarch64-static QEMU_LD_PREFIX=$(CURDIR)/$(aarch64_root) OMP_NUM_THREADS=1 \
+	  TIME_LIMIT_S=1800 PHOTONLAB=$(binary) \
+	  tests/run tests/aarch64/bits.sh $(unit_programs:$(out)/%=build/aarch64/%)
 
 test-plants:
 	@tests/plants/run
@@ -377,6 +408,7 @@ help:
 	@echo 'make test-tsan         the same under the thread sanitizer (clang)'
 	@echo 'make fuzz              FUZZ_SECONDS=60 for each reader of files; fuzz-coverage: lines reached'
 	@echo 'make test-bits         the same bytes from gcc -O1, -O3, clang and every instruction set'
+	@echo 'make test-aarch64      unit tests and the same bytes on aarch64 and a plain x86-64, emulated'
 	@echo 'make test-plants       plants known bugs in a copy and checks that the tests find them'
 	@echo 'make conformance       images against pbrt-v4, as precise as the stored ones (CONFORMANCE=folder'
 	@echo '                       SCENES=folder SCENE=name IMAGES=1)'
@@ -389,5 +421,5 @@ help:
 	@echo 'make install           PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall | dist | clean'
 	@echo
-	@echo 'BUILD=release|debug|asan|tsan|fuzz|coverage  CC=gcc|clang  OPT=-O2  CFLAGS_EXTRA=  V=1'
+	@echo 'BUILD=release|debug|asan|tsan|fuzz|coverage|aarch64  CC=gcc|clang  OPT=-O2  CFLAGS_EXTRA=  V=1'
 	@echo 'INSTALL=no (never call apt-get)  QUALITY=default|paper  RESULTS=folder'

@@ -20,11 +20,15 @@
 #ifdef ASAN
 #include <sanitizer/asan_interface.h>
 // Poisoning writes an eighth of the size, so less is reserved.
-enum { RED_ZONE = 32, RESERVE_BITS = 28 };
+#define RESERVE_BITS 28
+enum { RED_ZONE = 32 };
 static void arena_poison(void *at, size_t n) { ASAN_POISON_MEMORY_REGION(at, n); }
 static void arena_unpoison(void *at, size_t n) { ASAN_UNPOISON_MEMORY_REGION(at, n); }
 #else
-enum { RED_ZONE = 0, RESERVE_BITS = 36 };
+#ifndef RESERVE_BITS // emulated: less (Makefile)
+#define RESERVE_BITS 36
+#endif
+enum { RED_ZONE = 0 };
 static void arena_poison(void *at, size_t n) { (void)at, (void)n; }
 static void arena_unpoison(void *at, size_t n) { (void)at, (void)n; }
 #endif
