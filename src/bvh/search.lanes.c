@@ -22,7 +22,7 @@
 #ifdef __AVX2__
 #include <immintrin.h>
 
-// Measured on one core: 16 to 64 rays in flight.
+// Measured on one core: 32 to 96 rays in flight differ by less than the noise of 10 %.
 enum { POOL = 48, AHEAD = 8, MOST_WAITING = 256 };
 enum { QUEUE_HITS = BVH_NOTHING + 1, QUEUE_ODD, QUEUES };
 enum { BLOCK_FLOATS = sizeof(struct bvh_block) / sizeof(float) };
@@ -36,7 +36,8 @@ struct slot {
   float limit;                         // best t
   uint32_t n;                          // waiting
   uint32_t row;                        // where it is
-  uint32_t enter[4]; // bytes from a node to the faces by which an axis is entered, to its order
+  uint32_t enter[3], leave[3];         // bytes from a node to the faces of an axis
+  uint32_t octant;
   struct search search;
   int j;
   uint32_t accepted; // triangles of the block
@@ -50,8 +51,8 @@ struct slot {
 
 struct pool {
   _Alignas(BVH_LINE) struct slot slot[POOL];
-  struct slot *queue[QUEUES][POOL];
-  int count[QUEUES];
+  struct slot *queue[QUEUES][2][POOL]; // one is read while the other one fills
+  struct slot **first[QUEUES], **end[QUEUES];
   const char *base[QUEUES]; // of the rows of a kind
   uint32_t stride[QUEUES];
 };
@@ -93,13 +94,16 @@ static inline unsigned less(wide a, wide b) {
 static inline unsigned same(narrow a, narrow b) { return _mm256_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
 #else
 // [mask]: the lanes that are set, one a byte.
-static uint64_t lanes_of[256];
-
-__attribute__((constructor)) static void lanes_of_set(void) {
-  for (int mask = 0; mask < 256; mask++)
-    for (int lane = 0, n = 0; lane < 8; lane++)
-      if (mask >> lane & 1) lanes_of[mask] |= (uint64_t)lane << 8 * n++;
-}
+#define LANE(mask, lane)                                                                           \
+  ((uint64_t)((mask) >> (lane)&1 ? (lane) : 0)                                                     \
+   << 8 * __builtin_popcount((mask) & ((1 << (lane)) - 1)))
+#define LANES_1(mask)                                                                              \
+  LANE(mask, 0) | LANE(mask, 1) | LANE(mask, 2) | LANE(mask, 3) | LANE(mask, 4) | LANE(mask, 5) |  \
+      LANE(mask, 6) | LANE(mask, 7)
+#define LANES_4(mask) LANES_1(mask), LANES_1(mask + 1), LANES_1(mask + 2), LANES_1(mask + 3)
+#define LANES_16(mask) LANES_4(mask), LANES_4(mask + 4), LANES_4(mask + 8), LANES_4(mask + 12)
+#define LANES_64(mask) LANES_16(mask), LANES_16(mask + 16), LANES_16(mask + 32), LANES_16(mask + 48)
+static const uint64_t lanes_of[256] = {LANES_64(0), LANES_64(64), LANES_64(128), LANES_64(192)};
 
 static inline uint32_t push(__m256i order, __m256 near, __m256 far, __m256i child, float *to_near,
                             uint32_t *to_child) {
@@ -140,7 +144,7 @@ static inline unsigned same(narrow a, narrow b) {
 
 // ---- where a ray goes ----
 static inline void send(struct pool *pool, struct slot *slot, uint32_t queue) {
-  pool->queue[queue][pool->count[queue]++] = slot;
+  *pool->end[queue]++ = slot;
 }
 
 static inline void go_to(struct pool *pool, struct slot *slot, uint32_t child) {
@@ -194,7 +198,7 @@ static __attribute__((noinline)) bool slot_begin_parallel(struct slot *slot,
     double slack = reach + cone_abs(cone.o[k]) * 0x1p-22 + 0x1p-126;
     slot->near_o[k] = (float)(cone.o[k] + slack), slot->far_o[k] = (float)(cone.o[k] - slack);
     slot->near_scale[k] = slot->far_scale[k] = INFINITY;
-    slot->enter[k] = 64 * (uint32_t)k;
+    slot->enter[k] = 64 * (uint32_t)k, slot->leave[k] = slot->enter[k] + 32;
   }
   slot->odd = true;
   return true;
@@ -265,8 +269,11 @@ static inline enum begun slot_begin(struct slot *slot, const struct bvh *bvh) {
   _mm_store_ps(slot->near_scale, floats(_mm256_mul_pd(near, _mm256_set1_pd(1 - 0x1p-22))));
   _mm_store_ps(slot->far_scale, floats(_mm256_mul_pd(far, _mm256_set1_pd(1 + 0x1p-22))));
   const uint32_t octant = (uint32_t)_mm256_movemask_pd(backward) & 7;
-  for (uint32_t k = 0; k < 3; k++) slot->enter[k] = 64 * k + 32 * (octant >> k & 1);
-  slot->enter[3] = octant;
+  for (uint32_t k = 0; k < 3; k++) {
+    slot->enter[k] = 64 * k + 32 * (octant >> k & 1);
+    slot->leave[k] = slot->enter[k] ^ 32;
+  }
+  slot->octant = octant;
   slot->limit = (float)slot->search.best.t;
   slot->waiting[0] = bvh_child(BVH_NOTHING, 0);
   slot->waiting_near[0] = -INFINITY;
@@ -311,14 +318,13 @@ static inline void visit_node(struct pool *pool, struct slot *slot, const struct
   __m256 near = _mm256_setzero_ps(), far = _mm256_set1_ps(slot->limit);
 #pragma GCC unroll 3
   for (int k = 0; k < 3; k++) {
-    uint32_t enter = slot->enter[k], leave = enter ^ 32;
-    __m256 first = _mm256_sub_ps(faces(at, enter), _mm256_set1_ps(slot->near_o[k]));
-    __m256 last = _mm256_sub_ps(faces(at, leave), _mm256_set1_ps(slot->far_o[k]));
+    __m256 first = _mm256_sub_ps(faces(at, slot->enter[k]), _mm256_set1_ps(slot->near_o[k]));
+    __m256 last = _mm256_sub_ps(faces(at, slot->leave[k]), _mm256_set1_ps(slot->far_o[k]));
     near = _mm256_max_ps(_mm256_mul_ps(first, _mm256_set1_ps(slot->near_scale[k])), near);
     far = _mm256_min_ps(_mm256_mul_ps(last, _mm256_set1_ps(slot->far_scale[k])), far);
   }
   const __m256i shifts = _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21);
-  __m256i order = _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[slot->enter[3]]), shifts);
+  __m256i order = _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[slot->octant]), shifts);
   __m256i child = _mm256_load_si256((const __m256i *)node->child);
   uint32_t n = slot->n;
   n += push(order, near, far, child, slot->waiting_near + n, slot->waiting + n) - 1;
@@ -345,8 +351,10 @@ static inline int block_accepts(const struct slot *slot, const struct bvh_block 
   lanes e0 = x[1] * y[2] - y[1] * x[2];
   lanes e1 = x[2] * y[0] - y[2] * x[0];
   lanes e2 = x[0] * y[1] - y[0] * x[1];
-  __m256d accepted =
-      (__m256d)(((e0 >= 0) & (e1 >= 0) & (e2 >= 0)) | ((e0 <= 0) & (e1 <= 0) & (e2 <= 0)));
+  // Of vertices that are numbers all three are, of NaN vertices none.
+  __m256d low = _mm256_min_pd((__m256d)e0, _mm256_min_pd((__m256d)e1, (__m256d)e2));
+  __m256d high = _mm256_max_pd((__m256d)e0, _mm256_max_pd((__m256d)e1, (__m256d)e2));
+  __m256d accepted = (__m256d)(((lanes)low >= 0) | ((lanes)high <= 0));
   return _mm256_movemask_pd(accepted);
 }
 
@@ -375,7 +383,7 @@ static inline void tighten(struct slot *slot) {
   slot->n = kept;
 }
 
-static inline void end(struct pool *pool, struct slot *slot) { send(pool, slot, BVH_NOTHING); }
+static inline void finish(struct pool *pool, struct slot *slot) { send(pool, slot, BVH_NOTHING); }
 
 // WIDE rays and one triangle of each, which its edge functions accept.
 struct pairs {
@@ -530,7 +538,7 @@ static __attribute__((noinline)) void visit_odd(struct pool *pool, struct slot *
     double t = triangle_plane(ray, (const float(*)[3])vertex);
     if (slot->accepted >> lane & 1 &&
         search_triangle(bvh, &slot->search, kind, &cone, block, lane, t)) {
-      end(pool, slot);
+      finish(pool, slot);
       return;
     }
   }
@@ -544,7 +552,7 @@ static inline void visit_other(struct pool *pool, struct slot *slot, const struc
   struct cone cone;
   cone_set(&cone, slot->search.ray);
   if (search_other(bvh, &slot->search, kind, &cone, other)) {
-    end(pool, slot);
+    finish(pool, slot);
     return;
   }
   if (kind != SEARCH_ANY) tighten(slot);
@@ -552,19 +560,21 @@ static inline void visit_other(struct pool *pool, struct slot *slot, const struc
 }
 
 // ---- the pool ----
-static inline int take(struct pool *pool, int queue, struct slot *slot[POOL]) {
-  int n = pool->count[queue];
-  for (int i = 0; i < n; i++) slot[i] = pool->queue[queue][i];
-  pool->count[queue] = 0;
-  return n;
+// What is in a queue, which is empty then.
+static inline struct slot **take(struct pool *pool, uint32_t queue, int *n) {
+  struct slot **first = pool->first[queue], **other = pool->queue[queue][0];
+  *n = (int)(pool->end[queue] - first);
+  if (first == other) other = pool->queue[queue][1];
+  pool->first[queue] = pool->end[queue] = other;
+  return first;
 }
 
 static inline __attribute__((always_inline)) void
 run(const struct bvh *bvh, const struct queries *q, enum search_kind kind) {
   struct pool pool;
-  struct slot *now[POOL];
   for (int k = 0; k < QUEUES; k++)
-    pool.count[k] = 0, pool.base[k] = (const char *)&pool, pool.stride[k] = 0;
+    pool.first[k] = pool.end[k] = pool.queue[k][0], pool.base[k] = (const char *)&pool,
+    pool.stride[k] = 0;
   pool.base[BVH_NODE] = (const char *)bvh->node, pool.stride[BVH_NODE] = sizeof *bvh->node;
   pool.base[BVH_TRIANGLES] = (const char *)bvh->block;
   pool.stride[BVH_TRIANGLES] = sizeof *bvh->block;
@@ -572,17 +582,18 @@ run(const struct bvh *bvh, const struct queries *q, enum search_kind kind) {
   int next = 0, in_flight = 0;
   for (int k = 0; k < POOL; k++) in_flight += begin_next(&pool, &pool.slot[k], bvh, q, kind, &next);
   while (in_flight > 0) {
-    int n = take(&pool, BVH_NODE, now);
+    int n;
+    struct slot **now = take(&pool, BVH_NODE, &n);
     for (int i = 0; i < n; i++) visit_node(&pool, now[i], bvh);
-    n = take(&pool, BVH_TRIANGLES, now);
+    now = take(&pool, BVH_TRIANGLES, &n);
     for (int i = 0; i < n; i++) visit_block(&pool, now[i], bvh);
-    n = take(&pool, QUEUE_HITS, now);
+    now = take(&pool, QUEUE_HITS, &n);
     visit_hits(&pool, now, n, bvh, kind);
-    n = take(&pool, QUEUE_ODD, now);
+    now = take(&pool, QUEUE_ODD, &n);
     for (int i = 0; i < n; i++) visit_odd(&pool, now[i], bvh, kind);
-    n = take(&pool, BVH_OTHERS, now);
+    now = take(&pool, BVH_OTHERS, &n);
     for (int i = 0; i < n; i++) visit_other(&pool, now[i], bvh, kind);
-    n = take(&pool, BVH_NOTHING, now);
+    now = take(&pool, BVH_NOTHING, &n);
     for (int i = 0; i < n; i++) {
       search_end(&now[i]->search, q, now[i]->j, kind);
       in_flight -= !begin_next(&pool, now[i], bvh, q, kind, &next);

@@ -271,8 +271,8 @@ static bool hits_at(const struct scene *scene, const struct ray *ray, struct hit
 static void check_blockers(const struct scene *scene, const struct bvh *bvh, const struct ray *rays,
                            int n, const struct hit *closest) {
   struct hit hits[MOST_RAYS];
-  double distance[MOST_RAYS];
-  uint32_t emitter[MOST_RAYS];
+  double distance[MOST_RAYS] = {0};
+  uint32_t emitter[MOST_RAYS] = {0};
   for (int j = 0; j < n; j++) {
     double t = closest[j].t < INFINITY ? closest[j].t : 1;
     const double at[] = {t, nextafter(t, 0), nextafter(t, INFINITY), 1.37 * t, 0.73 * t, INFINITY};
@@ -319,7 +319,7 @@ static void check_scene(int scene, struct bvh_options options, const char *name)
   struct bvh *bvh = bvh_build(&m.scene, options, &m.arena);
   int n_hits = 0;
   for (int kind = 0; kind < N_KINDS; kind++) {
-    enum { N = 150 };
+    enum { N = 50 };
     struct ray ray[N];
     struct hit hit[N], again[N];
     for (int j = 0; j < N; j++) ray[j] = draw_ray(&m, &draw, kind);
