@@ -8,9 +8,16 @@
 
 enum { ITERATIONS_PER_THREAD = 4 }; // computed before they are merged in order
 
-// Iterations first, first + 1, ... in parallel, each into a frame of its own.
+// Iterations first, first + 1, ... in parallel, each into a frame of its own. One thread enters no
+// parallel region: in one, even of one thread, those of the integrator would start their threads
+// anew.
 static void compute_round(const struct integrator_type *integrator, void *const *state,
                           uint64_t first, int count, long size, double *frames, int threads) {
+  if (threads == 1) {
+    for (int k = 0; k < count && !interrupt_signal(); k++)
+      integrator->step(state[0], first + (uint64_t)k, frames + k * size);
+    return;
+  }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (int k = 0; k < count; k++)
     if (!interrupt_signal())
