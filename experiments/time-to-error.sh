@@ -15,7 +15,7 @@ links=$results.scenes # not in it: other results there are set aside
 # Links, so that a scene has a name of its own and finds its meshes: none is copied.
 link() { # link NAME
   local from
-  from=$(realpath "$SCENES/$1")
+  from=$(realpath "${SCENES:?}/$1")
   mkdir -p "$links/$1"
   ln -sfn "$from/small.pbrt" "$links/$1/$1.pbrt"
   [ ! -d "$from/models" ] || ln -sfn "$from/models" "$links/$1/models"
@@ -104,7 +104,7 @@ print_verdict() {
 mkdir -p "$links"
 { cat $yaml && parts; } >"$links/time-to-error.yaml"
 "$photonlab" run "$links/time-to-error.yaml" -o "$results" --quality "$quality"
-[ -s "$results/verdict.csv" ] && [ "$results/verdict.csv" -nt "$results/manifest.json" ] || verdict
+if [ ! "$results/verdict.csv" -nt "$results/manifest.json" ]; then verdict; fi
 "$photonlab" efficiency "$results"
 print_verdict
 "$photonlab" plot "$results"

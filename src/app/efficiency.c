@@ -148,6 +148,13 @@ static void print_reference(const struct field *field) {
          field->truth->integrator->name, field->truth->runs, reference->noise);
   if (reference->bias > 0) printf(", at most %.2g of bias", reference->bias);
   putchar('\n');
+  for (int m = 0; m < field->n_methods && field->truth->integrator->photons; m++) {
+    const struct method *method = &field->method[m];
+    struct pace_error off = method_mean(field, method);
+    if (!method->cell[0]->integrator->photons)
+      printf("  mean of the picture by %s, less the reference's: %+.2g +- %.1g %%\n", method->name,
+             100 * off.mean, 100 * off.se);
+  }
 }
 
 static void print_field(const struct field *field) {

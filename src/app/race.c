@@ -117,6 +117,16 @@ static bool read_truth(const struct results *results, const struct cell *first, 
   return ok;
 }
 
+// Over pixels and colours.
+static double image_mean(const struct image *image) {
+  long size = (long)image->width * image->height;
+  double sum = 0;
+  for (int c = 0; c < image->n_channels; c++)
+    for (long j = 0; j < size && strlen(image->name[c]) == 1; j++)
+      sum += (double)image->plane[c][j];
+  return sum / (3.0 * (double)size);
+}
+
 static bool read_errors(const struct results *results, const struct field *field,
                         struct method *method, struct arena scratch, struct problem *problem) {
   for (int k = 0; k < method->n_runs; k++)
@@ -130,6 +140,7 @@ static bool read_errors(const struct results *results, const struct field *field
           !image_error(&image, path, &field->reference.image, "the reference", value, problem))
         return false;
       method->error[k * method->n_points + j] = value[1];
+      method->mean[k] = image_mean(&image);
       if (!(value[1] > 0)) return problem_set(problem, "%s: has no error at all", path);
     }
   return true;
@@ -177,16 +188,23 @@ static bool read_times(const struct csv *csv, const struct group *group, int n_g
 
 // ---- methods ----
 
-struct pace_error method_point(const struct method *method, int j) {
+// Of x[runs], `step` apart.
+static struct pace_error over_runs(const double *x, int runs, int step) {
   struct pace_error at = {0, 0};
-  int runs = method->n_runs, n = method->n_points;
-  for (int k = 0; k < runs; k++) at.mean += method->error[k * n + j] / runs;
-  for (int k = 0; k < runs; k++) {
-    double d = method->error[k * n + j] - at.mean;
-    at.se += d * d;
-  }
+  for (int k = 0; k < runs; k++) at.mean += x[k * step] / runs;
+  for (int k = 0; k < runs; k++) at.se += (x[k * step] - at.mean) * (x[k * step] - at.mean);
   at.se = sqrt(at.se / (runs - 1) / runs);
   return at;
+}
+
+struct pace_error method_point(const struct method *method, int j) {
+  return over_runs(method->error + j, method->n_runs, method->n_points);
+}
+
+struct pace_error method_mean(const struct field *field, const struct method *method) {
+  double mean = image_mean(&field->reference.image);
+  struct pace_error at = over_runs(method->mean, method->n_runs, 1);
+  return (struct pace_error){at.mean / mean - 1, at.se / mean};
 }
 
 double method_time(const struct method *method, int j) {
@@ -227,6 +245,7 @@ static bool read_method(const struct results *results, const struct field *field
   ptrdiff_t size = (ptrdiff_t)method->n_runs * method->n_points;
   method->time_s = arena_new(arena, double, size);
   method->error = arena_new(arena, double, size);
+  method->mean = arena_new(arena, double, method->n_runs);
   if (!read_times(csv, group, n_groups, method, problem) ||
       !read_errors(results, field, method, *arena, problem))
     return false;

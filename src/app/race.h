@@ -13,6 +13,7 @@ struct method {
   const struct cell **cell; // [n_runs]
   int n_runs, n_points;
   double *time_s, *error; // [n_runs][n_points]; CPU seconds, relative mean square errors
+  double *mean;           // [n_runs], of the last image
   int n_counted;          // points before the first whose error the reference's has a share in
   struct pace pace;       // of those
 };
@@ -38,6 +39,9 @@ struct race {
 enum { REFERENCE_MARGIN = 5 };
 
 bool race_read(const struct results *, struct arena *, struct race *, struct problem *);
+
+// How far the mean of a method's last images is from the reference's, as a share of that.
+struct pace_error method_mean(const struct field *, const struct method *);
 
 struct pace_error method_point(const struct method *, int j); // error over runs at point j
 double method_time(const struct method *, int j);             // mean over runs
