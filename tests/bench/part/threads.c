@@ -3,9 +3,11 @@
 
 #include "base/file.h"
 #include "base/problem.h"
+#include "tests/bench/clock.h"
 #include "tests/bench/trial.h"
 
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 // Four runs of four iterations, of the measurement that the iteration parts time.
@@ -86,6 +88,28 @@ static void add(struct bench *bench, const char *name, const char *base, double 
                          .threads = 2});
 }
 
+static double thread_cpu(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// CPU seconds of all threads over those of this one, which does what is not shared out: what two
+// cores would gain if nobody else wanted them.
+static void add_share(struct bench *bench, const char *name, void (*body)(void *, int),
+                      void *data) {
+  if (!bench_wants(bench, "threads", name)) return;
+  body(data, -1);
+  struct seconds begin = clock_now();
+  double own = thread_cpu();
+  for (int k = 0; k < 4; k++) body(data, k);
+  bench_add(bench, "threads",
+            (struct row){.name = name,
+                         .kind = COUNT,
+                         .unit = "at best",
+                         .work = clock_since(begin).cpu / (thread_cpu() - own)});
+}
+
 static void add_experiments(struct bench *bench) {
   struct pair *pair = arena_new(bench->arena, struct pair, 1);
   struct trial *one = trial_of(bench, "one", 1), *two = trial_of(bench, "two", 2);
@@ -95,6 +119,7 @@ static void add_experiments(struct bench *bench) {
   trial_check_same(one, two, false);
   add(bench, "experiment-1", NULL, ITERATIONS, trial_run, one);
   add(bench, "experiment-2", "experiment-1", ITERATIONS, trial_run, two);
+  add_share(bench, "experiment-share", trial_run, two);
   add(bench, "processes-2", "experiment-1", 2 * ITERATIONS, by_processes, pair);
 }
 
@@ -107,6 +132,7 @@ static void rows(struct bench *bench) {
   struct steps *two = steps_new("sppm", measure, bench->arena);
   add(bench, "one-iteration-1", NULL, 1, steps_run, one);
   add(bench, "one-iteration-2", "one-iteration-1", 1, steps_run, two);
+  add_share(bench, "one-iteration-share", steps_run, two);
 }
 
 const struct part_type part_threads = {
