@@ -19,8 +19,6 @@ struct kernel_rule {
 
 static double shell(int d, double u) { return d == 1 ? 2 : d == 2 ? 2 * pi * u : 4 * pi * u * u; }
 
-static double to_the(int d, double r) { return d == 1 ? r : d == 2 ? r * r : r * r * r; }
-
 static struct kernel_rule kernel_rule_new(const struct kernel *kernel, int d) {
   struct kernel_rule rule;
   double u[RULE_NODES], du[RULE_NODES];
@@ -136,7 +134,7 @@ double profile_moment(const struct profile *profile, int j, double r) {
   double value = chebyshev_value(&profile->moment[j - 1], r * r);
   if (profile->shadow.shade == SHADE_LIT) value -= beyond(profile, j, r);
   if (profile->shadow.shade == SHADE_DARK) value = beyond(profile, j, r);
-  for (int k = 1; k < j; k++) value *= profile->flux / to_the(profile->d, r);
+  for (int k = 1; k < j; k++) value *= profile->flux / radius_power(r, profile->d);
   return profile->flux * value;
 }
 

@@ -79,18 +79,24 @@ static int weigh(struct gather *gather, int n_channels, const struct eye_point *
   return kept;
 }
 
+// f where wi is on the side of z; any direction there has it. False: none.
+static bool side_scatters(const struct bsdf *bsdf, struct vec wo, double z, double f[3]) {
+  bsdf->type->value(bsdf, wo, vec(0, 0, z), TRANSPORT_RADIANCE, f);
+  return f[0] != 0 || f[1] != 0 || f[2] != 0;
+}
+
 // Whether photons of one side are scattered, all alike, and none is left out.
 static bool is_sided(const struct gather *gather, const struct grid *grid,
                      const struct eye_point *point, int depth, struct sided_bsdf *sided) {
   const struct bsdf *bsdf = &point->bsdf;
-  struct vec behind = vec_scale(bsdf->n, -1);
-  double f[3];
-  if (!bsdf->type->by_side || bsdf->bent || gather->left_out) return false;
+  double cosine = vec_dot(point->wo, bsdf->n), f[3];
+  if (!bsdf->type->by_side || bsdf->bent || gather->left_out || cosine == 0) return false;
   if (grid->deepest + point->vertex >= depth) return false;
-  bool front = scatters(point, bsdf->n, sided->f), back = scatters(point, behind, f);
-  sided->n = front ? bsdf->n : behind;
-  if (back) memcpy(sided->f, f, sizeof f);
-  return front != back;
+  struct vec wo = vec(0, 0, cosine);
+  bool above = side_scatters(bsdf, wo, 1, sided->f), below = side_scatters(bsdf, wo, -1, f);
+  sided->n = above ? bsdf->n : vec_scale(bsdf->n, -1);
+  if (below) memcpy(sided->f, f, sizeof f);
+  return above != below;
 }
 
 // All that the point scatters within r, with f * flux of each.

@@ -20,6 +20,7 @@
 #include "density/grid.h"
 #include "density/kernel.h"
 #include "density/knn.h"
+#include "density/law.h"
 #include "walk/eye.h"
 
 // One estimator at one point and iteration; in media a ball.
@@ -32,8 +33,7 @@ struct disc {
 // c = psi(0) in d dimensions, kernel->constants(d).c; d = 2: a disc, 3: a ball.
 static inline struct disc disc_of(const struct kernel *kernel, double c, double r, int d,
                                   uint64_t n_emitted) {
-  double measure = d == 3 ? r * r * r : r * r;
-  return (struct disc){kernel, r, c / (measure * (double)n_emitted)};
+  return (struct disc){kernel, r, c / (radius_power(r, d) * (double)n_emitted)};
 }
 
 // Scratch for queries on grids of up to `capacity` photons.

@@ -12,17 +12,17 @@ static int find_on_side(const struct grid *grid, const struct grid_range *range,
   int found = 0;
   for (int k = 0; k < n; k++)
     for (int64_t j = range[k].begin, end = range[k].end; j < end; j += LANES) {
-      lanes dx = lanes_load(x + j) - lanes_of(p.x), dy = lanes_load(y + j) - lanes_of(p.y),
-            dz = lanes_load(z + j) - lanes_of(p.z);
+      lanes dx = lanes_load(x + j) - lanes_set(p.x), dy = lanes_load(y + j) - lanes_set(p.y),
+            dz = lanes_load(z + j) - lanes_set(p.z);
       lanes d2 = dx * dx + dy * dy + dz * dz;
-      lanes cosine = lanes_load(wx + j) * lanes_of(normal.x) +
-                     lanes_load(wy + j) * lanes_of(normal.y) +
-                     lanes_load(wz + j) * lanes_of(normal.z);
-      lanes_mask in = lanes_and(lanes_less(d2, lanes_of(r2)), lanes_first((int)(end - j)));
-      in = lanes_and(in, lanes_less(lanes_of(0), cosine));
+      lanes cosine = lanes_load(wx + j) * lanes_set(normal.x) +
+                     lanes_load(wy + j) * lanes_set(normal.y) +
+                     lanes_load(wz + j) * lanes_set(normal.z);
+      lanes_some in = lanes_and(lanes_less(d2, lanes_set(r2)), lanes_first((int)(end - j)));
+      in = lanes_and(in, lanes_less(lanes_set(0), cosine));
       lanes_pack(in, distance2 + found, d2);
       for (int c = 0; c < n_channels; c++)
-        lanes_pack(in, value[c] + found, lanes_of(bsdf->f[c]) * lanes_load(grid->flux[c] + j));
+        lanes_pack(in, value[c] + found, lanes_set(bsdf->f[c]) * lanes_load(grid->flux[c] + j));
       found += lanes_count(in);
     }
   return found;

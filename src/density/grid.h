@@ -1,9 +1,9 @@
-// The photon grid: who lies within r of a point. Cubic cells of edge r in boxes of boxes of cells:
-// the cell (x, y, z) is in the bucket of (x mod X, y mod Y, z mod Z), powers of two of at least 16
-// (less where no photon is), so that the cells of a ball are in different buckets, those along x in
-// neighbouring ones, and what is in a bucket with them is too far from it. The buckets are filled
-// by a stable counting sort, so that a query finds photons in one order: cells by (z, y, x), within
-// a cell as stored.
+// The photon grid: who lies within r of a point. Cubic cells of edge r; the cell (x, y, z) is in
+// the bucket of (x mod X, y mod Y, z mod Z), powers of two of at least 16 where the photons' box
+// has as many cells. So the cells of a ball are in different buckets, those along x side by side,
+// and what else is in one of them is too far away: the distance says so, no hash has to. Photons
+// are copied in the order of buckets, by a stable counting sort, so that a query finds them in one
+// order: cells by (z, y, x), within a cell as stored, whatever the number of buckets.
 #ifndef DENSITY_GRID_H
 #define DENSITY_GRID_H
 

@@ -7,7 +7,7 @@ static void bound(const struct vec *position, int64_t n, double lo[3], double hi
   lanes least[3], most[3];
   double at_lanes[2][3 * LANES];
   int64_t j = 0;
-  for (int v = 0; v < 3; v++) least[v] = lanes_of(INFINITY), most[v] = lanes_of(-INFINITY);
+  for (int v = 0; v < 3; v++) least[v] = lanes_set(INFINITY), most[v] = lanes_set(-INFINITY);
   for (; j + LANES <= n; j += LANES)
     for (int v = 0; v < 3; v++) {
       lanes a = lanes_load(x + 3 * j + v * LANES);
@@ -30,8 +30,8 @@ static void bound(const struct vec *position, int64_t n, double lo[3], double hi
 
 // Of the cell's distance from the box's first one; 0 of no number.
 static inline lanes_numbers wrapped(const struct grid *grid, int k, lanes x) {
-  lanes cell = lanes_floor(x * lanes_of(grid->inverse_edge)) - lanes_of((double)grid->lo[k]);
-  return lanes_to_numbers(lanes_max(cell, lanes_of(0))) & ((1u << grid->bits[k]) - 1);
+  lanes cell = lanes_floor(x * lanes_set(grid->inverse_edge)) - lanes_set((double)grid->lo[k]);
+  return lanes_to_numbers(lanes_max(cell, lanes_set(0))) & ((1u << grid->bits[k]) - 1);
 }
 
 static inline lanes_numbers bucket_of(const struct grid *grid, const double *position) {
@@ -61,10 +61,10 @@ static int within(const struct grid *grid, const struct grid_range *range, int n
   int found = 0;
   for (int k = 0; k < n; k++)
     for (int64_t j = range[k].begin, end = range[k].end; j < end; j += LANES) {
-      lanes dx = lanes_load(x + j) - lanes_of(p.x), dy = lanes_load(y + j) - lanes_of(p.y),
-            dz = lanes_load(z + j) - lanes_of(p.z);
+      lanes dx = lanes_load(x + j) - lanes_set(p.x), dy = lanes_load(y + j) - lanes_set(p.y),
+            dz = lanes_load(z + j) - lanes_set(p.z);
       lanes d2 = dx * dx + dy * dy + dz * dz;
-      lanes_mask in = lanes_and(lanes_less(d2, lanes_of(r2)), lanes_first((int)(end - j)));
+      lanes_some in = lanes_and(lanes_less(d2, lanes_set(r2)), lanes_first((int)(end - j)));
       lanes_pack(in, distance2 + found, d2);
       lanes_pack_numbers(in, at + found, (uint32_t)j);
       found += lanes_count(in);

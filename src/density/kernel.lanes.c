@@ -18,7 +18,7 @@ static double ball_volume(int d) {
 // ---- (1 - |u|^2)^s ----
 static inline lanes box_shape(lanes t2) {
   (void)t2;
-  return lanes_of(1);
+  return lanes_set(1);
 }
 
 static inline lanes epanechnikov_shape(lanes t2) { return 1 - t2; }
@@ -131,12 +131,12 @@ typedef lanes shape_of(lanes t2);
 
 static inline __attribute__((always_inline)) int weigh(shape_of *shape, const double *distance2,
                                                        double r, double *w, int n) {
-  lanes inverse_r2 = lanes_of(1 / (r * r));
+  lanes inverse_r2 = lanes_set(1 / (r * r));
   int within = 0;
   for (int j = 0; j < n; j += LANES) {
-    lanes_mask mine = lanes_first(n - j);
+    lanes_some mine = lanes_first(n - j);
     lanes t2 = lanes_load_where(mine, distance2 + j) * inverse_r2;
-    lanes_mask in = lanes_and(mine, lanes_less(t2, lanes_of(1)));
+    lanes_some in = lanes_and(mine, lanes_less(t2, lanes_set(1)));
     lanes_store_where(mine, w + j, lanes_where(in, shape(lanes_where(in, t2))));
     within += lanes_count(in);
   }

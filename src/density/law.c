@@ -104,8 +104,10 @@ const struct law *law_find(const char *name) {
   return NULL;
 }
 
+double radius_root(double rd, int d) { return d == 1 ? rd : d == 2 ? sqrt(rd) : num_cbrt(rd); }
+
 double law_radius(const struct law *law, double alpha, double r1, int d, uint64_t i) {
   assert(alpha >= 0 && alpha <= 1 && i >= 1 && d >= 1 && d <= 3);
   double rho = law->rho(alpha, i);
-  return r1 * (d == 1 ? rho : d == 2 ? sqrt(rho) : num_cbrt(rho));
+  return r1 * radius_root(rho, d);
 }

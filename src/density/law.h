@@ -27,6 +27,12 @@ extern const int n_laws;
 
 const struct law *law_find(const char *name); // NULL if unknown
 
+// r^d and its inverse, d in {1, 2, 3}.
+static inline double radius_power(double r, int d) {
+  return d == 1 ? r : d == 2 ? r * r : r * r * r;
+}
+double radius_root(double rd, int d);
+
 // r_i = r1 rho^(1/d), d in {1, 2, 3}.
 double law_radius(const struct law *, double alpha, double r1, int d, uint64_t i);
 

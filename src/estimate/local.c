@@ -1,7 +1,5 @@
 #include "estimate/local.h"
 
-#include "numeric/elementary.h"
-
 #include <omp.h>
 #include <string.h>
 
@@ -60,10 +58,6 @@ struct local *local_new(const struct measurement *measure, struct arena *arena) 
   return local;
 }
 
-static double power(double r, int d) { return d == 3 ? r * r * r : r * r; }
-
-static double root(double rd, int d) { return d == 3 ? num_cbrt(rd) : sqrt(rd); }
-
 void local_begin(struct local *local, uint64_t run) {
   const struct measurement *measure = local->map->measure;
   local->map->run = run;
@@ -71,7 +65,7 @@ void local_begin(struct local *local, uint64_t run) {
     struct local_field *field = &local->field[kind];
     for (long k = 0; k < (long)measure->n_points * measure->n_estimators; k++) {
       const struct estimator *estimator = &measure->estimator[k % measure->n_estimators];
-      field->rd[k] = power(estimator_r1(estimator, (enum point_kind)kind), field->d);
+      field->rd[k] = radius_power(estimator_r1(estimator, (enum point_kind)kind), field->d);
       field->n[k] = 0;
     }
   }
@@ -105,7 +99,8 @@ void local_see(struct local *local, uint64_t i) {
 
 static double radius(const struct local *local, const struct local_field *field, int point,
                      int estimator) {
-  return root(field->rd[(long)point * local->map->measure->n_estimators + estimator], field->d);
+  return radius_root(field->rd[(long)point * local->map->measure->n_estimators + estimator],
+                     field->d);
 }
 
 double local_radius(const struct local *local, int point, int estimator) {
@@ -245,7 +240,7 @@ static void shrink(struct local *local, const int64_t *found, int point, uint64_
     for (int kind = 0; kind < measurement_kinds(measure) && !law->count; kind++) {
       struct local_field *field = &local->field[kind];
       double r1 = estimator_r1(estimator, (enum point_kind)kind);
-      field->rd[k] = power(r1, field->d) * law->rho(estimator->alpha, i + 1);
+      field->rd[k] = radius_power(r1, field->d) * law->rho(estimator->alpha, i + 1);
     }
     if (!law->count) continue;
     struct local_field *field = &local->field[local->kind[point]];

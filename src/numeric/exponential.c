@@ -33,7 +33,7 @@ static double exp_pair(struct pair x) {
   int k = (int)(scaled + (scaled < 0 ? -0.5 : 0.5));
   struct pair r = pair_sum(x.hi - k * LN2_HI, x.lo - k * LN2_LO); // the first difference is exact
   struct pair s = pair_quick_sum(1, r.hi);
-  double small = exp_tail(r.hi) + 0.5 * r.hi * r.hi + (r.lo + r.lo * r.hi);
+  double small = exp_tail(lanes_set(r.hi))[0] + 0.5 * r.hi * r.hi + (r.lo + r.lo * r.hi);
   return scale_by_two(s.hi + (s.lo + small), k);
 }
 

@@ -1,27 +1,17 @@
-// The vector vocabulary of NAME.lanes.c files (base/level.h): LANES doubles, as many as the level
-// has in a register. The operators + - * / work on each lane; at the scalar level all is plain C.
-// Sums of numeric/sum.h are SUM_PARTS of them, part p with the lanes from p * LANES on.
+// More of the vector vocabulary (base/lanes.h): some lanes of all (lanes_some), whole numbers, and
+// sums. Sums of numeric/sum.h are SUM_PARTS vectors, part p with the lanes from p * LANES on.
 #ifndef NUMERIC_LANES_H
 #define NUMERIC_LANES_H
 
+#include "base/lanes.h"
 #include "numeric/sum.h"
 
-#include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#if defined LEVEL && defined __AVX512F__
-#include <immintrin.h>
-enum { LANES = 8 };
-typedef __m512d lanes;
-typedef __mmask8 lanes_mask;
+#if defined __AVX512F__
+typedef __mmask8 lanes_some;
 typedef uint32_t lanes_numbers __attribute__((vector_size(4 * LANES)));
 
-static inline lanes lanes_load(const double *x) { return _mm512_loadu_pd(x); }
-static inline void lanes_store(double *x, lanes a) { _mm512_storeu_pd(x, a); }
-static inline lanes lanes_of(double x) { return _mm512_set1_pd(x); }
-static inline lanes lanes_sqrt(lanes a) { return _mm512_sqrt_pd(a); }
 static inline lanes lanes_truncate(lanes a) {
   return _mm512_roundscale_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 }
@@ -38,22 +28,21 @@ static inline lanes lanes_power_of_two(lanes k) {
   return _mm512_castsi512_pd(_mm512_slli_epi64(low, 52));
 }
 
-static inline lanes_mask lanes_less(lanes a, lanes b) {
+static inline lanes_some lanes_less(lanes a, lanes b) {
   return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
 }
-static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return a & b; }
-static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return a | b; }
-static inline lanes_mask lanes_first(int n) { // n >= 0
-  return (lanes_mask)(n < LANES ? (1 << n) - 1 : 0xff);
+static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
+static inline lanes_some lanes_first(int n) { // n >= 0
+  return (lanes_some)(n < LANES ? (1 << n) - 1 : 0xff);
 }
-static inline int lanes_count(lanes_mask mask) { return __builtin_popcount(mask); }
+static inline int lanes_count(lanes_some some) { return __builtin_popcount(some); }
 
-static inline lanes lanes_where(lanes_mask mask, lanes a) { return _mm512_maskz_mov_pd(mask, a); }
-static inline lanes lanes_load_where(lanes_mask mask, const double *x) {
-  return _mm512_maskz_loadu_pd(mask, x);
+static inline lanes lanes_where(lanes_some some, lanes a) { return _mm512_maskz_mov_pd(some, a); }
+static inline lanes lanes_load_where(lanes_some some, const double *x) {
+  return _mm512_maskz_loadu_pd(some, x);
 }
-static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
-  _mm512_mask_storeu_pd(x, mask, a);
+static inline void lanes_store_where(lanes_some some, double *x, lanes a) {
+  _mm512_mask_storeu_pd(x, some, a);
 }
 static inline void lanes_load_triples(const double *x, lanes a[3]) {
   static const int64_t two[3][8] = {
@@ -66,26 +55,19 @@ static inline void lanes_load_triples(const double *x, lanes a[3]) {
     a[c] = _mm512_permutex2var_pd(begin, _mm512_loadu_si512(three[c]), third);
   }
 }
-static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
-  _mm512_storeu_pd(x, _mm512_maskz_compress_pd(mask, a));
+static inline void lanes_pack(lanes_some some, double *x, lanes a) {
+  _mm512_storeu_pd(x, _mm512_maskz_compress_pd(some, a));
 }
-static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
+static inline void lanes_pack_numbers(lanes_some some, uint32_t *to, uint32_t from) {
   __m256i number =
       _mm256_add_epi32(_mm256_set1_epi32((int32_t)from), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-  _mm256_storeu_si256((__m256i *)to, _mm256_maskz_compress_epi32(mask, number));
+  _mm256_storeu_si256((__m256i *)to, _mm256_maskz_compress_epi32(some, number));
 }
 
-#elif defined LEVEL && defined __AVX2__
-#include <immintrin.h>
-enum { LANES = 4 };
-typedef __m256d lanes;
-typedef __m256d lanes_mask;
+#elif defined __AVX2__
+typedef __m256d lanes_some;
 typedef uint32_t lanes_numbers __attribute__((vector_size(4 * LANES)));
 
-static inline lanes lanes_load(const double *x) { return _mm256_loadu_pd(x); }
-static inline void lanes_store(double *x, lanes a) { _mm256_storeu_pd(x, a); }
-static inline lanes lanes_of(double x) { return _mm256_set1_pd(x); }
-static inline lanes lanes_sqrt(lanes a) { return _mm256_sqrt_pd(a); }
 static inline lanes lanes_truncate(lanes a) {
   return _mm256_round_pd(a, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 }
@@ -102,21 +84,20 @@ static inline lanes lanes_power_of_two(lanes k) {
   return _mm256_castsi256_pd(_mm256_slli_epi64(low, 52));
 }
 
-static inline lanes_mask lanes_less(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return _mm256_and_pd(a, b); }
-static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return _mm256_or_pd(a, b); }
-static inline lanes_mask lanes_first(int n) {
-  return lanes_less(_mm256_setr_pd(0, 1, 2, 3), lanes_of(n));
+static inline lanes_some lanes_less(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return _mm256_and_pd(a, b); }
+static inline lanes_some lanes_first(int n) {
+  return lanes_less(_mm256_setr_pd(0, 1, 2, 3), lanes_set(n));
 }
-static inline unsigned lanes_bits(lanes_mask mask) { return (unsigned)_mm256_movemask_pd(mask); }
-static inline int lanes_count(lanes_mask mask) { return __builtin_popcount(lanes_bits(mask)); }
+static inline unsigned lanes_bits(lanes_some some) { return (unsigned)_mm256_movemask_pd(some); }
+static inline int lanes_count(lanes_some some) { return __builtin_popcount(lanes_bits(some)); }
 
-static inline lanes lanes_where(lanes_mask mask, lanes a) { return _mm256_and_pd(mask, a); }
-static inline lanes lanes_load_where(lanes_mask mask, const double *x) {
-  return _mm256_maskload_pd(x, _mm256_castpd_si256(mask));
+static inline lanes lanes_where(lanes_some some, lanes a) { return _mm256_and_pd(some, a); }
+static inline lanes lanes_load_where(lanes_some some, const double *x) {
+  return _mm256_maskload_pd(x, _mm256_castpd_si256(some));
 }
-static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
-  _mm256_maskstore_pd(x, _mm256_castpd_si256(mask), a);
+static inline void lanes_store_where(lanes_some some, double *x, lanes a) {
+  _mm256_maskstore_pd(x, _mm256_castpd_si256(some), a);
 }
 
 static inline void lanes_load_triples(const double *x, lanes a[3]) {
@@ -129,7 +110,7 @@ static inline void lanes_load_triples(const double *x, lanes a[3]) {
   a[2] = _mm256_shuffle_pd(zx, yz, 0xa);
 }
 
-// Which halves of doubles go to the front, by the mask's bits.
+// Which halves of doubles go to the front, by the some's bits.
 #define HALVES(k) 2 * (k), 2 * (k) + 1
 static const int32_t lanes_order[16][8] = {
     {0},
@@ -151,72 +132,64 @@ static const int32_t lanes_order[16][8] = {
 };
 #undef HALVES
 
-static inline __m256i lanes_packed(lanes_mask mask, __m256i a) {
-  const __m256i *order = (const __m256i *)lanes_order[lanes_bits(mask)];
+static inline __m256i lanes_packed(lanes_some some, __m256i a) {
+  const __m256i *order = (const __m256i *)lanes_order[lanes_bits(some)];
   return _mm256_permutevar8x32_epi32(a, _mm256_loadu_si256(order));
 }
-static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
-  _mm256_storeu_pd(x, _mm256_castsi256_pd(lanes_packed(mask, _mm256_castpd_si256(a))));
+static inline void lanes_pack(lanes_some some, double *x, lanes a) {
+  _mm256_storeu_pd(x, _mm256_castsi256_pd(lanes_packed(some, _mm256_castpd_si256(a))));
 }
-static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
+static inline void lanes_pack_numbers(lanes_some some, uint32_t *to, uint32_t from) {
   __m256i number = _mm256_add_epi64(_mm256_set1_epi64x(from), _mm256_setr_epi64x(0, 1, 2, 3));
-  __m256 packed = _mm256_castsi256_ps(lanes_packed(mask, number));
+  __m256 packed = _mm256_castsi256_ps(lanes_packed(some, number));
   __m128 low = _mm_shuffle_ps(_mm256_castps256_ps128(packed), _mm256_extractf128_ps(packed, 1),
                               _MM_SHUFFLE(2, 0, 2, 0));
   _mm_storeu_ps((float *)to, low);
 }
 
 #else
-enum { LANES = 1 };
-typedef double lanes;
-typedef bool lanes_mask;
+typedef bool lanes_some;
 typedef uint32_t lanes_numbers;
 
-static inline lanes lanes_load(const double *x) { return *x; }
-static inline void lanes_store(double *x, lanes a) { *x = a; }
-static inline lanes lanes_of(double x) { return x; }
-static inline lanes lanes_sqrt(lanes a) { return sqrt(a); }
-static inline lanes lanes_truncate(lanes a) { return (double)(int)a; } // |a| < 2^31
-static inline lanes lanes_floor(lanes a) {                             // |a| < 2^63
-  double truncated = (double)(int64_t)a;
-  return truncated - (a < truncated);
+static inline lanes lanes_truncate(lanes a) { return lanes_set((double)(int)a[0]); } // |a| < 2^31
+static inline lanes lanes_floor(lanes a) {                                           // |a| < 2^63
+  int64_t truncated = (int64_t)a[0];
+  return lanes_set((double)(truncated - (a[0] < (double)truncated)));
 }
 // b where either is NaN.
-static inline lanes lanes_min(lanes a, lanes b) { return a < b ? a : b; }
-static inline lanes lanes_max(lanes a, lanes b) { return a > b ? a : b; }
-static inline lanes_numbers lanes_to_numbers(lanes a) { return (uint32_t)a; } // 0 <= a < 2^31
+static inline lanes lanes_min(lanes a, lanes b) { return lanes_set(a[0] < b[0] ? a[0] : b[0]); }
+static inline lanes lanes_max(lanes a, lanes b) { return lanes_set(a[0] > b[0] ? a[0] : b[0]); }
+static inline lanes_numbers lanes_to_numbers(lanes a) { return (uint32_t)a[0]; } // 0 <= a < 2^31
 // 2^k of whole numbers -1022 <= k <= 1023.
 static inline lanes lanes_power_of_two(lanes k) {
-  uint64_t bits = (uint64_t)((int)k + 1023) << 52;
-  double x;
-  __builtin_memcpy(&x, &bits, sizeof x);
-  return x;
+  return (lanes)((lanes_mask){((int64_t)k[0] + 1023) << 52});
 }
 
-static inline lanes_mask lanes_less(lanes a, lanes b) { return a < b; }
-static inline lanes_mask lanes_and(lanes_mask a, lanes_mask b) { return a & b; }
-static inline lanes_mask lanes_or(lanes_mask a, lanes_mask b) { return a | b; }
-static inline lanes_mask lanes_first(int n) { return n > 0; } // of the lanes
-static inline int lanes_count(lanes_mask mask) { return mask; }
+static inline lanes_some lanes_less(lanes a, lanes b) { return a[0] < b[0]; }
+static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
+static inline lanes_some lanes_first(int n) { return n > 0; } // of the lanes
+static inline int lanes_count(lanes_some some) { return some; }
 
-// 0 where the mask is not set: there nothing is loaded, or stored.
-static inline lanes lanes_where(lanes_mask mask, lanes a) { return mask ? a : 0; }
-static inline lanes lanes_load_where(lanes_mask mask, const double *x) { return mask ? *x : 0; }
-static inline void lanes_store_where(lanes_mask mask, double *x, lanes a) {
-  if (mask) *x = a;
+// 0 in other lanes: there nothing is loaded, or stored.
+static inline lanes lanes_where(lanes_some some, lanes a) { return some ? a : lanes_set(0); }
+static inline lanes lanes_load_where(lanes_some some, const double *x) {
+  return lanes_set(some ? *x : 0);
+}
+static inline void lanes_store_where(lanes_some some, double *x, lanes a) {
+  if (some) *x = a[0];
 }
 // x[0], x[3], ...; x[1], x[4], ...; x[2], x[5], ...
 static inline void lanes_load_triples(const double *x, lanes a[3]) {
-  for (int c = 0; c < 3; c++) a[c] = x[c];
+  for (int c = 0; c < 3; c++) a[c] = lanes_set(x[c]);
 }
-// Those where the mask is set, to x[0], x[1], ...; what is behind them, up to LANES, is lost.
-static inline void lanes_pack(lanes_mask mask, double *x, lanes a) {
-  (void)mask;
-  *x = a;
+// These lanes to x[0], x[1], ...; what is behind them, up to LANES, is lost.
+static inline void lanes_pack(lanes_some some, double *x, lanes a) {
+  (void)some;
+  *x = a[0];
 }
 // The same of from, from + 1, ...
-static inline void lanes_pack_numbers(lanes_mask mask, uint32_t *to, uint32_t from) {
-  (void)mask;
+static inline void lanes_pack_numbers(lanes_some some, uint32_t *to, uint32_t from) {
+  (void)some;
   *to = from;
 }
 #endif

@@ -10,7 +10,7 @@
 
 // exp(r) - 1 = r + r^2/2 + tail, |r| <= ln(2)/2: the tail's Taylor series, error below 2^-60.
 static inline lanes exp_tail(lanes r) {
-  lanes p = lanes_of(1.0 / 6227020800);
+  lanes p = lanes_set(1.0 / 6227020800);
   p = p * r + 1.0 / 479001600;
   p = p * r + 1.0 / 39916800;
   p = p * r + 1.0 / 3628800;

@@ -1,6 +1,9 @@
 // Kernels: closed forms against quadrature and against the table of theory 1.2.
 #include "density/kernel.h"
 
+#include "base/level.h"
+#include "numeric/elementary.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -129,6 +132,46 @@ static void shapes_of_arrays_are_shapes_of_their_elements(void **state) {
     }
 }
 
+// The plain formulas, one value at a time.
+static double shape(int k, double t2) {
+  double t = sqrt(t2), rest = 1 - t;
+  switch (kernels[k].name[0]) {
+  case 'c':
+    return 1 - t;
+  case 'e':
+    return 1 - t2;
+  case 't':
+    return (1 - t2) * (1 - t2) * (1 - t2);
+  case 'g':
+    return num_exp(-4.5 * t2);
+  case 'q':
+    return rest * rest * rest * (1 + 3 * t + 6 * t2);
+  default:
+    return kernels[k].name[1] == 'o' ? 1 : (1 - t2) * (1 - t2); // box, biweight
+  }
+}
+
+static void shapes_have_the_same_bits_at_every_level(void **state) {
+  (void)state;
+  enum { N = 2000 };
+  static double d2[N], w[N];
+  double r = 0.7;
+  for (int j = 0; j < N; j++) d2[j] = 0.55 * j / N;
+  d2[1] = r * r, d2[2] = INFINITY, d2[3] = NAN;
+  for (int level = 0; level <= (int)level_best(); level++) {
+    level_choose((enum level)level);
+    for (int k = 0; k < n_kernels; k++) {
+      int within = kernel_weigh(&kernels[k], d2, r, w, N), expected = 0;
+      for (int j = 0; j < N; j++) {
+        double t2 = d2[j] * (1 / (r * r));
+        expected += t2 < 1;
+        assert_true(w[j] == (t2 < 1 ? shape(k, t2) : 0));
+      }
+      assert_int_equal(within, expected);
+    }
+  }
+}
+
 static void values_are_zero_from_the_support_on(void **state) {
   (void)state;
   for (int k = 0; k < n_kernels; k++)
@@ -157,6 +200,7 @@ int main(void) {
       cmocka_unit_test(constants_are_those_of_the_table),
       cmocka_unit_test(shapes_start_at_one_and_never_rise),
       cmocka_unit_test(shapes_of_arrays_are_shapes_of_their_elements),
+      cmocka_unit_test(shapes_have_the_same_bits_at_every_level),
       cmocka_unit_test(values_are_zero_from_the_support_on),
       cmocka_unit_test(names_find_their_rows),
   };

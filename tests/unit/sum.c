@@ -1,6 +1,7 @@
 // Sums have one shape.
 #include "numeric/sum.h"
 
+#include "base/level.h"
 #include "numeric/rng.h"
 
 #include <math.h>
@@ -62,11 +63,24 @@ static void sums_are_right(void **state) {
   assert_true(fabsl(sum_array(x, N) - want) <= 16 * 0x1p-53L * want);
 }
 
+static void products_have_the_shape_at_every_level(void **state) {
+  (void)state;
+  double a[N], b[N], product[N];
+  draw("a", a);
+  draw("b", b);
+  for (int j = 0; j < N; j++) product[j] = a[j] * b[j];
+  for (int level = 0; level <= (int)level_best(); level++) {
+    level_choose((enum level)level);
+    for (int n = 0; n <= N; n++) assert_true(sum_products(a, b, n) == sum_array(product, n));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(item_j_goes_to_lane_j_mod_8_and_lanes_to_one_tree),
       cmocka_unit_test(the_shape_can_be_told_from_a_running_sum),
       cmocka_unit_test(sums_are_right),
+      cmocka_unit_test(products_have_the_shape_at_every_level),
   };
   return cmocka_run_group_tests_name("sum", tests, NULL, NULL);
 }

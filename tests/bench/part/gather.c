@@ -1,5 +1,6 @@
 #include "tests/bench/measure.h"
 
+#include "base/level.h"
 #include "estimate/photon_map.h"
 
 #include <math.h>
@@ -7,20 +8,26 @@
 
 static const char *const scenes[] = {"box", "torus", "cornell-gray", "cornell-torus-glass"};
 
+enum { TEN = 10 };
+
 struct job {
   struct measurement measure;
   struct photon_map *map;
   struct arena *arena;
-  double *frame, r;
-  int64_t *count; // [n_points] photons found
+  enum level level;
+  double *frame, r[TEN];
+  int64_t *count; // [n_points][n_estimators] photons found
 };
 
 static void gather(void *data, int repetition) {
   struct job *job = data;
+  enum level chosen = level_chosen();
   (void)repetition;
+  level_choose(job->level);
   memset(job->frame, 0, (size_t)photon_map_frame(&job->measure) * sizeof *job->frame);
   for (int j = 0; j < job->measure.n_points; j++)
-    photon_map_gather(job->map, j, &job->r, &job->count[j], job->frame);
+    photon_map_gather(job->map, j, job->r, &job->count[j * job->measure.n_estimators], job->frame);
+  level_choose(chosen);
 }
 
 static uint64_t hash(const void *data) {
@@ -29,9 +36,13 @@ static uint64_t hash(const void *data) {
 }
 
 static void build(void *data, int repetition) {
-  struct photon_field *field = &((struct job *)data)->map->field[ON_SURFACE];
+  struct job *job = data;
+  struct photon_field *field = &job->map->field[ON_SURFACE];
+  enum level chosen = level_chosen();
   (void)repetition;
-  grid_build(&field->grid, &field->photons, ((struct job *)data)->r, ((struct job *)data)->arena);
+  level_choose(job->level);
+  grid_build(&field->grid, &field->photons, job->r[0], job->arena);
+  level_choose(chosen);
 }
 
 static uint64_t hash_grid(const void *data) {
@@ -44,13 +55,14 @@ static struct job *job_new(const struct bench_scene *scene, bool grid, struct ar
   struct job *job = arena_new(arena, struct job, 1);
   job->measure = measure_of(scene, false);
   job->measure.keep_points = true;
-  job->r = 0.05;
+  for (int e = 0; e < TEN; e++) job->r[e] = 0.05 * (1 - 0.05 * (e / 2));
+  job->level = level_chosen();
   job->arena = arena_new(arena, struct arena, 1);
   *job->arena = arena_reserve();
   job->map = photon_map_new(&job->measure, job->arena);
   job->frame = arena_new(arena, double, photon_map_frame(&job->measure));
   job->count = arena_new(arena, int64_t, job->measure.n_points);
-  const double r[POINT_KINDS] = {grid ? job->r : INFINITY, grid ? job->r : INFINITY};
+  const double r[POINT_KINDS] = {grid ? job->r[0] : INFINITY, grid ? job->r[0] : INFINITY};
   photon_map_see(job->map, 1);
   photon_map_emit(job->map, 1, r);
   gather(job, 0);
@@ -62,7 +74,7 @@ static double brute_force(const struct job *job, int j) {
   const struct photons *photons = &job->map->field[ON_SURFACE].photons;
   const struct eye_point *point = &job->map->point[j];
   const struct estimator *estimator = &job->measure.estimator[0];
-  double sum = 0, f[3], r2 = job->r * job->r;
+  double sum = 0, f[3], r2 = job->r[0] * job->r[0];
   for (int64_t k = 0; point->bsdf.type && k < photons->count; k++) {
     struct vec d = vec_sub(photons->position[k], point->p);
     double t2 = vec_dot(d, d) / r2;
@@ -102,32 +114,85 @@ static double found(const struct job *job) {
   return n / job->measure.n_points;
 }
 
-static void add(struct bench *bench, const struct bench_scene *scene) {
-  struct job *job = job_new(scene, true, bench->arena);
-  struct job *tree = job_new(scene, false, bench->arena);
-  check(job, tree, scene->name);
-  double photons = (double)job->map->field[ON_SURFACE].photons.count;
+// The same by another level.
+static struct job *at_level(const struct job *job, enum level level, const char *name,
+                            struct arena *arena) {
+  struct job *other = arena_new(arena, struct job, 1);
+  *other = *job;
+  other->level = level;
+  other->frame = arena_new(arena, double, photon_map_frame(&job->measure));
+  gather(other, 0);
+  bench_check(hash(other) == hash(job), "levels differ", name);
+  return other;
+}
+
+// The same photons for five radii by two kernels; the first estimator is the job's.
+static struct job *with_ten(const struct job *job, const char *name, struct arena *arena) {
+  struct job *ten = arena_new(arena, struct job, 1);
+  struct estimator *estimator = arena_new(arena, struct estimator, TEN);
+  *ten = *job;
+  for (int e = 0; e < TEN; e++) {
+    estimator[e] = job->measure.estimator[0];
+    if (e % 2) estimator[e].kernel = kernel_find("epanechnikov");
+  }
+  ten->measure.estimator = estimator;
+  ten->measure.n_estimators = TEN;
+  ten->map = photon_map_new(&ten->measure, ten->arena);
+  ten->frame = arena_new(arena, double, photon_map_frame(&ten->measure));
+  ten->count = arena_new(arena, int64_t, (ptrdiff_t)TEN * ten->measure.n_points);
+  const double r[POINT_KINDS] = {ten->r[0], ten->r[0]};
+  photon_map_see(ten->map, 1);
+  photon_map_emit(ten->map, 1, r);
+  gather(ten, 0);
+  size_t size = (size_t)photon_map_frame(&job->measure) * sizeof *job->frame;
+  bench_check(memcmp(ten->frame, job->frame, size) == 0, "one estimator and ten differ", name);
+  return ten;
+}
+
+static void add_points(struct bench *bench, struct job *job, const char *name, const char *base) {
   bench_add(bench, "gather",
-            (struct row){.name = arena_format(bench->arena, "%s/points", scene->name),
+            (struct row){.name = name,
                          .kind = RATE,
                          .unit = "Mpoints/s",
                          .work = 1e-6 * job->measure.n_points,
                          .body = gather,
                          .data = job,
-                         .hash = hash});
+                         .hash = hash,
+                         .base = base});
+}
+
+static void add_grid(struct bench *bench, struct job *job, const char *name, const char *base) {
   bench_add(bench, "gather",
-            (struct row){.name = arena_format(bench->arena, "%s/photons", scene->name),
+            (struct row){.name = name,
+                         .kind = RATE,
+                         .unit = "Mphotons/s",
+                         .work = 1e-6 * (double)job->map->field[ON_SURFACE].photons.count,
+                         .body = build,
+                         .data = job,
+                         .hash = hash_grid,
+                         .base = base});
+}
+
+static void add(struct bench *bench, const struct bench_scene *scene) {
+  struct arena *arena = bench->arena;
+  struct job *job = job_new(scene, true, arena), *tree = job_new(scene, false, arena);
+  check(job, tree, scene->name);
+  const char *points = arena_format(arena, "%s/points", scene->name);
+  const char *grid = arena_format(arena, "%s/grid", scene->name);
+  bench_add(bench, "gather",
+            (struct row){.name = arena_format(arena, "%s/photons", scene->name),
                          .kind = COUNT,
                          .unit = "per point",
                          .work = found(job)});
-  bench_add(bench, "gather",
-            (struct row){.name = arena_format(bench->arena, "%s/grid", scene->name),
-                         .kind = RATE,
-                         .unit = "Mphotons/s",
-                         .work = 1e-6 * photons,
-                         .body = build,
-                         .data = job,
-                         .hash = hash_grid});
+  add_points(bench, job, points, NULL);
+  add_points(bench, with_ten(job, scene->name, arena), arena_format(arena, "%s/ten", points),
+             points);
+  add_grid(bench, job, grid, NULL);
+  for (int level = (int)job->level - 1; level >= 0; level--) {
+    struct job *other = at_level(job, (enum level)level, scene->name, arena);
+    add_points(bench, other, arena_format(arena, "%s/%s", points, level_names[level]), points);
+    add_grid(bench, other, arena_format(arena, "%s/%s", grid, level_names[level]), grid);
+  }
 }
 
 static void rows(struct bench *bench) {
