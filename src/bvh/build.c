@@ -1,5 +1,5 @@
-// The binary tree over a scene's primitives, by binned SAH (split.c) on all threads, down to single
-// primitives: what becomes of its nodes is chosen in collapse.c.
+// The binary tree over a scene's primitives, by binned SAH (split.c) on all threads, down to leaves
+// that are not worth dividing: what becomes of its nodes is chosen in collapse.c.
 // Large ranges are divided by all threads in chunks that are merged in order; what is left of them
 // one thread divides alone. Both sizes are constants, so the tree does not depend on the number of
 // threads.
@@ -77,8 +77,16 @@ static enum bvh_kind kind_of(const struct bvh_ref *ref, uint32_t count) {
   return triangles == count ? BVH_TRIANGLES : triangles == 0 ? BVH_OTHERS : BVH_NODE;
 }
 
-// The size of the first half.
-static uint32_t divide(const struct build *b, const struct range *range, struct extent extent[2]) {
+// A leaf, as two leaves would cost more even if their node had room for both.
+static bool stays_whole(const struct build *b, const struct range *range, enum bvh_kind kind,
+                        const struct split *split) {
+  double cost = bounds_area(range->extent.box) * bvh_blocks_of(range->count);
+  return kind != BVH_NODE && range->count <= b->leaf_size && split->cost >= cost;
+}
+
+// The size of the first half; 0: it stays whole.
+static uint32_t divide(const struct build *b, const struct range *range, enum bvh_kind kind,
+                       struct extent extent[2]) {
   struct bvh_ref *ref = range_refs(b, range);
   uint32_t count = range->count, left = count / 2; // all centres are one, or deep enough
   if (b->flat) {
@@ -88,6 +96,7 @@ static uint32_t divide(const struct build *b, const struct range *range, struct 
     struct binning binning = split_binning(&range->extent.centers, count);
     split_fill(&binning, ref, count, &bins);
     struct split split = split_best(&binning, &bins);
+    if (stays_whole(b, range, kind, &split)) return 0;
     if (split.cost < INFINITY) return partition(ref, count, &binning, &split, extent);
   }
   extent[0] = extent_of(ref, left);
@@ -113,8 +122,9 @@ static struct binary *range_build(const struct build *b, const struct range *ran
   struct extent extent[2];
   struct range half[2];
   n->kind = kind_of(range_refs(b, range), range->count);
-  if (range->count > 1 && !(b->flat && n->kind != BVH_NODE)) {
-    uint32_t left = divide(b, range, extent);
+  bool whole = range->count <= 1 || (b->flat && n->kind != BVH_NODE);
+  uint32_t left = whole ? 0 : divide(b, range, n->kind, extent);
+  if (left) {
     halves_of(range, left, range->array, extent, half);
     for (int side = 0; side < 2; side++) n->half[side] = range_build(b, &half[side]);
   }
