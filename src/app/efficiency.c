@@ -181,7 +181,9 @@ static int efficiency(struct cli *cli, struct problem *problem) {
   for (int f = 0; f < race.n_fields; f++) print_field(&race.field[f]);
   printf("relmse: mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels, +- over runs of other "
          "seeds.\nEnds of intervals: from where on a lead is significant (t-test at each time, 5 "
-         "%%).\nA curve ends where its error is below %d times the reference's.\n",
+         "%%).\nA curve ends where its error is below %d times the reference's. Few samples of an "
+         "unbiased "
+         "method may\nmiss what they rarely find: a low mean with a small +-.\n",
          REFERENCE_MARGIN);
   return 0;
 }
