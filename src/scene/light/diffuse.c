@@ -17,8 +17,9 @@ struct diffuse {
   bool by_power;  // each primitive emits the same power, else the same radiance
   bool invisible; // no ray hits it
   bool gray;
-  double L[3]; // radiance, or what multiplies the image; by_power: times the primitive's area
-  double *cdf; // [shape->count + 1] of the choice of a primitive, relative to the last entry
+  double L[3];     // radiance, or what multiplies the image; by_power: times the primitive's area
+  double per_area; // pdf of a point where all are alike
+  double *cdf;     // [shape->count + 1] of the choice of a primitive, relative to the last entry
   const struct texels *texels; // or NULL
 };
 
@@ -80,6 +81,7 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
   double alpha =
       shape->alpha && !shape->alpha->texture && !diffuse->invisible ? shape->alpha->value[0] : 1;
   build_cdf(builder->scene, diffuse, builder->arena);
+  diffuse->per_area = 1 / cdf_total(diffuse);
   if (!(cdf_total(diffuse) > 0)) params_complain(params, "L", "the emitter has no area");
   for (int c = 0; c < 3; c++) {
     diffuse->L[c] *= dark ? 0 : total;
@@ -93,8 +95,11 @@ static bool read(struct scene_builder *builder, struct params *params, struct li
 // What leaves a point of the emitter, alpha left out.
 static void point_radiance(const struct scene *scene, const struct diffuse *diffuse,
                            const struct surface *at, double rgb[3]) {
-  double divisor = diffuse->by_power ? area(scene, diffuse->shape, at->primitive) : 1;
-  for (int c = 0; c < 3; c++) rgb[c] = diffuse->L[c] / divisor;
+  for (int c = 0; c < 3; c++) rgb[c] = diffuse->L[c];
+  if (diffuse->by_power) {
+    double divisor = area(scene, diffuse->shape, at->primitive);
+    for (int c = 0; c < 3; c++) rgb[c] /= divisor;
+  }
   if (!diffuse->texels) return;
   double texel[3];
   texels_between(diffuse->texels, at->uv[0], 1 - at->uv[1], texel);
@@ -109,6 +114,7 @@ static double opacity(const struct diffuse *diffuse, const struct surface *at) {
 
 static double pdf_area(const struct scene *scene, const struct diffuse *diffuse,
                        const struct surface *at) {
+  if (!diffuse->by_power && !diffuse->shape->type->density) return diffuse->per_area;
   double a = diffuse->by_power ? area(scene, diffuse->shape, at->primitive) : 1;
   return density(scene, diffuse->shape, at->primitive, at->p) / (a * cdf_total(diffuse));
 }
@@ -128,17 +134,20 @@ static uint32_t choose(const struct diffuse *diffuse, double x) {
 
 // A point of the emitter; u0 is used twice: which primitive, and its remainder within that one. The
 // remainder stays below 1: x and cdf[k + 1] differ by an ulp at least, and so do both differences.
-static struct surface sample_point(const struct scene *scene, const struct diffuse *diffuse,
-                                   double u0, double u1) {
+static void sample_point(const struct scene *scene, const struct diffuse *diffuse, double u0,
+                         double u1, struct surface *at) {
   const struct shape *shape = diffuse->shape;
   double x = u0 * cdf_total(diffuse);
   uint32_t k = choose(diffuse, x);
   double rest = (x - diffuse->cdf[k]) / (diffuse->cdf[k + 1] - diffuse->cdf[k]);
-  struct surface at = {.primitive = shape->first + k, .shape = (uint32_t)(shape - scene->shape)};
-  shape->type->sample(scene, shape, at.primitive, rest, u1, &at.p, &at.ng);
-  at.ns = at.ng;
-  if (shape->detailed) shape->type->detail(scene, shape, &at);
-  return at;
+  at->primitive = shape->first + k;
+  at->shape = (uint32_t)(shape - scene->shape);
+  shape->type->sample(scene, shape, at->primitive, rest, u1, &at->p, &at->ng);
+  if (!shape->detailed) return; // nobody asks for more
+  at->ns = at->ng;
+  at->dpdu = vec(0, 0, 0);
+  at->uv[0] = at->uv[1] = 0;
+  shape->type->detail(scene, shape, at);
 }
 
 // Pi times the radiance over the density of its point, both sides counted. Without an image and
@@ -161,7 +170,8 @@ static void emitted_flux(const struct scene *scene, const struct light *light,
 static void emit(const struct scene *scene, const struct light *light, const double *u,
                  struct emission *out) {
   const struct diffuse *diffuse = light->data;
-  struct surface at = sample_point(scene, diffuse, u[0], u[1]);
+  struct surface at;
+  sample_point(scene, diffuse, u[0], u[1], &at);
   struct vec n = at.ng;
   double u2 = u[2];
   if (diffuse->two_sided) {
@@ -182,7 +192,8 @@ static double emitted_cosine(const struct diffuse *diffuse, struct vec n, struct
 static bool sample(const struct scene *scene, const struct light *light, struct vec p,
                    const double u[2], struct light_sample *out) {
   const struct diffuse *diffuse = light->data;
-  struct surface at = sample_point(scene, diffuse, u[0], u[1]);
+  struct surface at;
+  sample_point(scene, diffuse, u[0], u[1], &at);
   struct vec to_light = vec_sub(at.p, p);
   double d2 = vec_dot(to_light, to_light), distance = sqrt(d2);
   if (!(d2 > 0)) return false;
@@ -192,10 +203,10 @@ static bool sample(const struct scene *scene, const struct light *light, struct 
   double pdf = pdf_area(scene, diffuse, &at) * d2 / cosine, radiance[3];
   double over_pdf = opacity(diffuse, &at) / pdf;
   point_radiance(scene, diffuse, &at, radiance);
-  *out = (struct light_sample){.wi = wi,
-                               .distance = distance,
-                               .pdf_solid_angle = diffuse->invisible ? 0 : pdf,
-                               .primitive = at.primitive};
+  out->wi = wi;
+  out->distance = distance;
+  out->pdf_solid_angle = diffuse->invisible ? 0 : pdf;
+  out->primitive = at.primitive;
   for (int c = 0; c < 3; c++) out->radiance_over_pdf[c] = radiance[c] * over_pdf;
   return true;
 }
