@@ -24,21 +24,23 @@ static struct vec lens_point(const struct camera *camera, const double u[2]) {
 }
 
 // All rays through one point of the film meet in the plane z = focal_distance.
-static void through_lens(const struct camera *camera, const double u[2], struct ray *ray) {
-  struct vec focus = vec_along(ray->o, ray->d, camera->focal_distance / ray->d.z);
-  ray->o = lens_point(camera, u);
-  ray->d = vec_sub(focus, ray->o);
+static void through_lens(const struct camera *camera, const double u[2], struct vec *o,
+                         struct vec *d) {
+  struct vec focus = vec_along(*o, *d, camera->focal_distance / d->z);
+  *o = lens_point(camera, u);
+  *d = vec_sub(focus, *o);
 }
 
 struct ray camera_ray(const struct camera *camera, double x, double y, const double u[2]) {
   double s = (x + camera->crop_x) / camera->full_width,
          t = (y + camera->crop_y) / camera->full_height;
   const double *w = camera->window;
-  struct ray ray = camera->type->ray(camera, w[0] + s * (w[1] - w[0]), w[3] - t * (w[3] - w[2]));
-  if (camera->lens_radius > 0) through_lens(camera, u, &ray);
-  ray.o = transform_point(&camera->world_from_camera, ray.o);
-  ray.d = vec_normalize(transform_direction(&camera->world_from_camera, ray.d));
-  return ray;
+  struct vec o, d;
+  camera->type->ray(camera, w[0] + s * (w[1] - w[0]), w[3] - t * (w[3] - w[2]), &o, &d);
+  if (camera->lens_radius > 0) through_lens(camera, u, &o, &d);
+  o = transform_point(&camera->world_from_camera, o);
+  d = vec_normalize(transform_direction(&camera->world_from_camera, d));
+  return (struct ray){o, d, INFINITY, PRIMITIVE_NONE};
 }
 
 struct camera_finder camera_finder(const struct camera *camera) {
@@ -76,7 +78,8 @@ bool camera_find_point(const struct camera_finder *finder, struct vec p, const d
     if (!find_through_lens(camera, at, o, xy, &flow)) return false;
   } else {
     if (!camera->type->find(camera, at, xy, &flow)) return false;
-    o = camera->type->ray(camera, xy[0], xy[1]).o;
+    struct vec d;
+    camera->type->ray(camera, xy[0], xy[1], &o, &d);
   }
   sight->x = (xy[0] - w[0]) / (w[1] - w[0]) * camera->full_width - camera->crop_x;
   sight->y = (w[3] - xy[1]) / (w[3] - w[2]) * camera->full_height - camera->crop_y;

@@ -216,7 +216,7 @@ struct camera_type {
   void (*set_window)(struct camera *, const double screen[4]);
   // The ray in camera space through (x, y) of the window, before the lens; d need not be of unit
   // length.
-  struct ray (*ray)(const struct camera *, double x, double y);
+  void (*ray)(const struct camera *, double x, double y, struct vec *o, struct vec *d);
   // Its inverse: the (x, y) whose ray meets p, false if none does. An element of surface at p, as a
   // vector along its normal, covers the area |flow . element| of the window. NULL: there is none.
   bool (*find)(const struct camera *, struct vec p, double xy[2], struct vec *flow);

@@ -11,9 +11,10 @@ static void set_window(struct camera *camera, const double screen[4]) {
   for (int k = 0; k < 4; k++) camera->window[k] = screen[k];
 }
 
-static struct ray ray(const struct camera *camera, double x, double y) {
+static void ray(const struct camera *camera, double x, double y, struct vec *o, struct vec *d) {
   (void)camera;
-  return (struct ray){vec(x, y, 0), vec(0, 0, 1), INFINITY, PRIMITIVE_NONE};
+  *o = vec(x, y, 0);
+  *d = vec(0, 0, 1);
 }
 
 static bool find(const struct camera *camera, struct vec p, double xy[2], struct vec *flow) {

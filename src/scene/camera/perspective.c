@@ -17,9 +17,10 @@ static void set_window(struct camera *camera, const double screen[4]) {
   for (int k = 0; k < 4; k++) camera->window[k] = screen[k] * scale;
 }
 
-static struct ray ray(const struct camera *camera, double x, double y) {
+static void ray(const struct camera *camera, double x, double y, struct vec *o, struct vec *d) {
   (void)camera;
-  return (struct ray){vec(0, 0, 0), vec(x, y, 1), INFINITY, PRIMITIVE_NONE};
+  *o = vec(0, 0, 0);
+  *d = vec(x, y, 1);
 }
 
 // A sphere's element seen from the centre, onto the plane z = 1.

@@ -41,9 +41,10 @@ static struct vec equal_area(double s, double t) {
   return octahedral_direction(s, t);
 }
 
-static struct ray ray(const struct camera *camera, double x, double y) {
-  struct vec d = camera->equirectangular ? equirectangular(x, y) : equal_area(x, y);
-  return (struct ray){vec(0, 0, 0), vec(d.x, d.z, d.y), INFINITY, PRIMITIVE_NONE};
+static void ray(const struct camera *camera, double x, double y, struct vec *o, struct vec *d) {
+  struct vec up = camera->equirectangular ? equirectangular(x, y) : equal_area(x, y);
+  *o = vec(0, 0, 0);
+  *d = vec(up.x, up.z, up.y);
 }
 
 const struct camera_type camera_spherical = {
