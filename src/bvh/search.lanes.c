@@ -395,13 +395,13 @@ static inline void pairs_test(struct pairs *pairs, const struct bvh *bvh, const 
     none |= (unsigned)(slot->left < 0) << w;
   }
   places in_pool, in_blocks, left;
-  memcpy(&in_pool, slot_at, sizeof in_pool);
-  memcpy(&in_blocks, at, sizeof in_blocks);
-  memcpy(&left, left_at, sizeof left);
+  __builtin_memcpy(&in_pool, slot_at, sizeof in_pool);
+  __builtin_memcpy(&in_blocks, at, sizeof in_blocks);
+  __builtin_memcpy(&left, left_at, sizeof left);
   narrow corner[3][3];
   pairs_corners(bvh, in_blocks, corner);
   wide t = pairs_t((const narrow(*)[3])corner, pool, in_pool, &pairs->hit);
-  memcpy(pairs->t, &t, sizeof t);
+  __builtin_memcpy(pairs->t, &t, sizeof t);
   if (none != (1u << WIDE) - 1)
     pairs->hit &= none | pairs_not_behind(bvh, (const narrow(*)[3])corner, pool, in_pool, left);
 }
