@@ -39,8 +39,8 @@ add_row() { # add_row TEMPLATE FILE
   cat "$scratch/new" >"$2"
 }
 
-add 'a kernel is one file' src/density/kernel.c \
-  add_row "$templates/kernel.c" src/density/kernel.c
+add 'a kernel is one file' src/density/kernel.lanes.c \
+  add_row "$templates/kernel.c" src/density/kernel.lanes.c
 add 'a radius law is one file' src/density/law.c add_row "$templates/law.c" src/density/law.c
 add 'a reference radius is one file' src/estimate/reference_radius.c \
   add_row "$templates/reference_radius.c" src/estimate/reference_radius.c

@@ -1,13 +1,15 @@
-// A kernel, here 1 - t^4 at t = distance / radius. The functions go into src/density/kernel.c above
-// its table, the row at the end of the table; nothing else knows of it. Then `make validate`
-// compares the closed forms with quadrature, and an experiment may say `kernel: quartic`.
+// A kernel, here 1 - t^4 at t = distance / radius. The functions go into
+// src/density/kernel.lanes.c above its table, the row at the end of the table; nothing else knows of
+// it. Then `make validate` compares the closed forms with quadrature, and an experiment may say
+// `kernel: quartic`.
 
 // ---- 1 - t^4 ----
-// psi(u) / psi(0) at |u|^2 = t2[j] in [0, 1): 1 at the centre, nowhere rising, nowhere 0. Only
-// + - * / sqrt and numeric/elementary.h (num_exp, ...): libm has other bits on other machines.
-static void quartic_shape(const double *t2, double *w, int n) {
-  for (int j = 0; j < n; j++) w[j] = 1 - t2[j] * t2[j];
-}
+// psi(u) / psi(0) at |u|^2 = t2 in [0, 1), of several photons at once: 1 at the centre, nowhere
+// rising, nowhere 0. Only + - * / and the vector vocabulary (base/lanes.h, numeric/lanes.h,
+// numeric/lanes_exp.h): every SIMD level has the bits of the scalar one, and libm has others on
+// other machines.
+static inline lanes quartic_shape(lanes t2) { return 1 - t2 * t2; }
+WEIGH(quartic)
 
 // Integral over [0, 1] of t^m w(t), and of t^m w(t)^2 with w^2 = 1 - 2 t^4 + t^8.
 static double quartic_moment(int m) { return 1.0 / (m + 1) - 1.0 / (m + 5); }
@@ -28,4 +30,4 @@ static struct kernel_constants quartic_constants(int d) {
 }
 
 // The row: name, formula, source, functions.
-  {"quartic", "1 - t^4", "a template", quartic_shape, quartic_constants},
+  {"quartic", "1 - t^4", "a template", quartic_weigh, quartic_constants},
