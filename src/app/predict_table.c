@@ -172,7 +172,7 @@ void predict_text(const struct predicted *p, const char *head, char text[PREDICT
     columns[c].print(p, text);
     return;
   }
-  assert(!"a column");
+  assert(false && "a column");
 }
 
 static int column_width(const struct column *column, const struct predicted *p, int n) {

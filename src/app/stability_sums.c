@@ -36,7 +36,7 @@ static void sums_add(struct sums *sums, uint64_t n) {
 // Levels rise and are multiples of the lanes; the sums of one are continued to the next.
 static const struct sums *sums_to(double n) {
   static struct sums sums;
-  if (sums.n > n) sums = (struct sums){0};
+  if ((double)sums.n > n) sums = (struct sums){0};
   sums_add(&sums, (uint64_t)n);
   return &sums;
 }

@@ -252,7 +252,7 @@ static void beams_are_as_long_as_photons_fly(void **state) {
       light_scene(FILLED "LightSource \"beam\"\nTranslate 0 0 -50" LIGHT_PLANE, &arena);
   struct walk *walk = walk_through(&scene);
   enum { N = 20000 };
-  struct photon_pass pass = {N, 2, 0, 0};
+  struct photon_pass pass = {.n_emitted = N, .depth = 2};
   struct photons photons = {0};
   struct beams beams = {0};
   struct photon_sinks sinks = {.surface = {&photons, NULL}, .beams = &beams};
