@@ -5,6 +5,8 @@
 // threads.
 #include "bvh/build.h"
 
+#include "bvh/few.h"
+
 #include "base/threads.h"
 #include "scene/shape/triangle.h"
 #include "scene/skip.h"
@@ -305,6 +307,7 @@ struct bvh *bvh_build(const struct scene *scene, struct bvh_options options, str
   struct bvh *bvh = arena_new(arena, struct bvh, 1);
   bvh->scene = scene;
   binary_collapse(root, b.order, bvh, arena, b.n_threads, scratch);
+  if (!options.tree && !options.leaf_size) bvh->few = few_new(scene, arena);
   for (int k = 0; k < n_own; k++) arena_release(reserved[k]);
   arena_release(reserve);
   return bvh;

@@ -53,6 +53,7 @@ struct bvh *bvh_clone(const struct bvh *bvh, const struct scene *scene, const bo
   struct bvh *clone = arena_new(arena, struct bvh, 1);
   *clone = *bvh;
   clone->scene = scene;
+  clone->few = NULL; // its triangles will move
   bvh_allocate(clone, bvh->n_nodes, bvh->n_blocks, bvh->n_others, arena);
   memcpy(clone->node, bvh->node, bvh->n_nodes * sizeof *bvh->node);
   memcpy(clone->block, bvh->block, bvh->n_blocks * sizeof *bvh->block);

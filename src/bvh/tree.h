@@ -52,8 +52,11 @@ struct bvh_other {
   uint32_t primitive, more;
 };
 
+struct few; // bvh/few.h
+
 struct bvh {
   const struct scene *scene;
+  const struct few *few; // NULL: the tree is walked
   struct bvh_node *node;
   struct bvh_block *block;
   struct bvh_other *other;

@@ -31,7 +31,17 @@ static inline lanes lanes_power_of_two(lanes k) {
 static inline lanes_some lanes_less(lanes a, lanes b) {
   return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
 }
+static inline lanes_some lanes_at_most(lanes a, lanes b) {
+  return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+}
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
+static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return a | b; }
+static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) {
+  return _mm512_testn_epi64_mask(_mm512_loadu_si512(x), _mm512_set1_epi64((int64_t)1 << bit));
+}
+static inline lanes lanes_choose(lanes_some some, lanes a, lanes b) {
+  return _mm512_mask_mov_pd(b, some, a);
+}
 static inline lanes_some lanes_first(int n) { // n >= 0
   return (lanes_some)(n < LANES ? (1 << n) - 1 : 0xff);
 }
@@ -85,7 +95,16 @@ static inline lanes lanes_power_of_two(lanes k) {
 }
 
 static inline lanes_some lanes_less(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline lanes_some lanes_at_most(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return _mm256_and_pd(a, b); }
+static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return _mm256_or_pd(a, b); }
+static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) {
+  __m256i b = _mm256_set1_epi64x((int64_t)1 << bit), a = _mm256_loadu_si256((const __m256i *)x);
+  return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a, b), _mm256_setzero_si256()));
+}
+static inline lanes lanes_choose(lanes_some some, lanes a, lanes b) {
+  return _mm256_blendv_pd(b, a, some);
+}
 static inline lanes_some lanes_first(int n) {
   return lanes_less(_mm256_setr_pd(0, 1, 2, 3), lanes_set(n));
 }
@@ -166,7 +185,11 @@ static inline lanes lanes_power_of_two(lanes k) {
 }
 
 static inline lanes_some lanes_less(lanes a, lanes b) { return a[0] < b[0]; }
+static inline lanes_some lanes_at_most(lanes a, lanes b) { return a[0] <= b[0]; }
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
+static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return a | b; }
+static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) { return !(*x >> bit & 1); }
+static inline lanes lanes_choose(lanes_some some, lanes a, lanes b) { return some ? a : b; }
 static inline lanes_some lanes_first(int n) { return n > 0; } // of the lanes
 static inline int lanes_count(lanes_some some) { return some; }
 

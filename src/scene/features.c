@@ -1,4 +1,5 @@
-#include "scene/scene.h"
+#include "scene/shape/triangle.h"
+#include "scene/skip.h"
 
 static bool shapes_are_gray(const struct scene *scene) {
   for (uint32_t i = 0; i < scene->n_shapes; i++) {
@@ -68,4 +69,11 @@ struct features scene_features(const struct scene *scene) {
   features.random_eye = features.motion || features.see_through || features.media ||
                         needs & (MATERIAL_RANDOM | MATERIAL_DELTA) || scene->camera.lens_radius > 0;
   return features;
+}
+
+bool scene_is_few_triangles(const struct scene *scene) {
+  if (scene->n_primitives > SKIP_FEW_TRIANGLES) return false;
+  for (uint32_t s = 0; s < scene->n_shapes; s++)
+    if (scene->shape[s].type->intersect != triangle_intersect) return false;
+  return true;
 }

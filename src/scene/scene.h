@@ -303,6 +303,9 @@ struct scene_options {
 bool scene_read_with(const char *path, struct scene_options, struct arena *, struct scene *,
                      struct problem *);
 
+// Whether there are only triangles, and so few of them that no tree is needed.
+bool scene_is_few_triangles(const struct scene *);
+
 // The surface a hit of this ray found.
 struct surface scene_surface(const struct scene *, const struct ray *, struct hit);
 

@@ -1,6 +1,7 @@
 // The tree against the definition: the smallest (t, primitive) over all primitives, bit for bit, on
 // scenes and rays chosen to be hard; and closed meshes, which no ray may leave.
 #include "base/level.h"
+#include "scene/skip.h"
 #include "bvh/tree.h"
 #include "tests/unit/meshes.h"
 
@@ -79,6 +80,24 @@ static void boxes(struct mesh *m, struct draw *draw) {
   mesh_add_grid_box(m, vec(0.25, -0.5, 0.125), 0.5, 2);
 }
 
+// As many as need no tree (bvh/few.h): a room, a box that shares a plane with its floor, a fan, two
+// in one place, one without area.
+static void few(struct mesh *m, struct draw *draw) {
+  mesh_add_shape(m, &shape_trianglemesh);
+  mesh_add_grid_box(m, vec(0, 0, 0), 1, 1);
+  mesh_add_grid_box(m, vec(0.25, -0.75, 0.125), 0.25, 1);
+  struct vec hub = draw_in_cube(draw, 0.5), rim = draw_in_cube(draw, 0.5);
+  for (int i = 0; i < 18; i++) {
+    struct vec next = draw_in_cube(draw, 0.5);
+    mesh_add_triangle(m, hub, rim, next);
+    rim = next;
+  }
+  for (int i = 0; i < 2; i++) mesh_add_triangle(m, vec(-1, -1, 0), vec(0, 1, -1), hub);
+  mesh_add_triangle(m, hub, rim, vec_along(hub, vec_sub(rim, hub), 0.5));
+  add_triangles(m, draw, 3, 1, vec(1e-4, 0.7, 1e-4));
+  assert_int_equal(m->scene.n_primitives, SKIP_FEW_TRIANGLES);
+}
+
 // Every split takes the largest few off one axis and leaves the rest: deeper than BVH_SAH_DEPTH.
 static void ever_smaller(struct mesh *m, struct draw *draw) {
   (void)draw;
@@ -154,6 +173,7 @@ static const struct {
     {"tiny in huge", tiny_in_huge},
     {"far away", far_away},
     {"boxes", boxes},
+    {"few", few},
     {"ever smaller", ever_smaller},
     {"patches", patches},
     {"mixed", mixed},
@@ -335,6 +355,20 @@ static void check_scene(int scene, struct bvh_options options, int n, const char
       assert_int_equal(again[j].primitive, j % 2 ? PRIMITIVE_NONE : hit[j].primitive);
   }
   if (n_hits < 30) fail_msg("%s: only %d rays hit anything", hard_scenes[scene].name, n_hits);
+  mesh_release(&m);
+}
+
+static void a_few_triangles_have_no_tree_unless_it_is_asked_for(void **state) {
+  (void)state;
+  struct draw draw = draw_named(__func__);
+  struct mesh m = mesh_new(400, 1000);
+  few(&m, &draw);
+  mesh_finish(&m);
+  assert_non_null(bvh_build(&m.scene, (struct bvh_options){0}, &m.arena)->few);
+  assert_null(bvh_build(&m.scene, (struct bvh_options){.tree = true}, &m.arena)->few);
+  mesh_add_triangle(&m, vec(0, 0, 0), vec(1, 0, 0), vec(0, 1, 0));
+  mesh_finish(&m);
+  assert_null(bvh_build(&m.scene, (struct bvh_options){0}, &m.arena)->few);
   mesh_release(&m);
 }
 
@@ -535,6 +569,7 @@ static void an_empty_scene_is_never_hit(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_few_triangles_have_no_tree_unless_it_is_asked_for),
       cmocka_unit_test(the_tree_finds_what_brute_force_finds),
       cmocka_unit_test(leaves_of_one_primitive_change_nothing),
       cmocka_unit_test(one_leaf_of_everything_changes_nothing),
