@@ -10,9 +10,9 @@ static double relmse(double x, double r) { return (x - r) * (x - r) / (r * r + 0
 static double smape(double x, double r) { return x == r ? 0 : fabs(x - r) / (fabs(x) + fabs(r)); }
 
 const struct image_metric image_metrics[IMAGE_METRICS] = {
-    {"mse", "mean of (x - r)^2", mse},
-    {"relmse", "mean of (x - r)^2 / (r^2 + 0.01)", relmse},
-    {"smape", "mean of |x - r| / (|x| + |r|)", smape},
+    [IMAGE_MSE] = {"mse", "mean of (x - r)^2", mse},
+    [IMAGE_RELMSE] = {"relmse", "mean of (x - r)^2 / (r^2 + 0.01)", relmse},
+    [IMAGE_SMAPE] = {"smape", "mean of |x - r| / (|x| + |r|)", smape},
 };
 
 // Planes of R, G and B; a gray image has one, three times.

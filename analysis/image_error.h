@@ -12,7 +12,7 @@
 
 #include "image/image.h"
 
-enum { IMAGE_METRICS = 3 };
+enum { IMAGE_MSE, IMAGE_RELMSE, IMAGE_SMAPE, IMAGE_METRICS };
 struct image_metric {
   const char *name, *definition;
   double (*of)(double x, double r);

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-// ---- files: errors.csv and references.csv are the same bits everywhere, the others hold times
-// ----
+// ---- files ----
+// errors.csv and references.csv are the same bits everywhere, the others hold times.
 
 static void write_errors(FILE *out, const struct race *race) {
   fputs("scene,method,cell,N,relmse\n", out);
@@ -182,8 +182,7 @@ static int efficiency(struct cli *cli, struct problem *problem) {
   printf("relmse: mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels, +- over runs of other "
          "seeds.\nEnds of intervals: from where on a lead is significant (t-test at each time, 5 "
          "%%).\nA curve ends where its error is below %d times the reference's. Few samples of an "
-         "unbiased "
-         "method may\nmiss what they rarely find: a low mean with a small +-.\n",
+         "unbiased method may\nmiss what they rarely find: a low mean with a small +-.\n",
          REFERENCE_MARGIN);
   return 0;
 }

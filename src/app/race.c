@@ -139,9 +139,9 @@ static bool read_errors(const struct results *results, const struct field *field
       if (!image_read(path, &own, &image, problem) ||
           !image_error(&image, path, &field->reference.image, "the reference", value, problem))
         return false;
-      method->error[k * method->n_points + j] = value[1];
+      method->error[k * method->n_points + j] = value[IMAGE_RELMSE];
       method->mean[k] = image_mean(&image);
-      if (!(value[1] > 0)) return problem_set(problem, "%s: has no error at all", path);
+      if (!(value[IMAGE_RELMSE] > 0)) return problem_set(problem, "%s: has no error at all", path);
     }
   return true;
 }
