@@ -127,7 +127,7 @@ bool reference_make(const struct group_plan *plan, const struct cell *cell,
                     struct arena scratch, struct problem *problem) {
   if (!is_sampled(cell)) return true;
   char *path = reference_path(plan, cell, directory, &scratch);
-  bool again = options->skip_off & SKIP_SAMPLED;
+  bool again = options->skip_off & SKIP_REFERENCES;
   if (!again && reference_read(path, plan, probe, scratch)) return true;
   // Begun first: a folder that cannot be written to is found out before the work.
   struct file_out out;
@@ -154,7 +154,7 @@ double reference_left_s(const struct group_plan *plan, const struct cell *cell,
   struct probe *probe = arena_new(&scratch, struct probe, plan->n_probes);
   if (!is_sampled(cell)) return 0;
   char *path = reference_path(plan, cell, directory, &scratch);
-  bool again = plan->measure.skip_off & SKIP_SAMPLED;
+  bool again = plan->measure.skip_off & SKIP_REFERENCES;
   if (!again && reference_read(path, plan, probe, scratch)) return 0;
   struct reference reference = reference_of(plan, cell, &scratch);
   struct moments_tree kept = again ? moments_tree_new(plan->n_probes, &scratch)

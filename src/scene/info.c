@@ -210,8 +210,7 @@ static const char *applies(enum skip bit, const struct scene *scene,
   case SKIP_MOTION:
     return features->motion ? "no, something moves" : "yes";
   case SKIP_TREE:
-    if (scene->n_primitives <= SKIP_FEW_PRIMITIVES || scene_is_few_triangles(scene)) return "yes";
-    return "no, there are more";
+    return scene->n_primitives > SKIP_FEW_PRIMITIVES ? "no, there are more" : "yes";
   case SKIP_UNSEEN:
     return "where a few points are measured";
   case SKIP_PROBES:
@@ -220,7 +219,7 @@ static const char *applies(enum skip bit, const struct scene *scene,
     return "of paths as long as `depth` allows";
   case SKIP_RUNS:
     return "where an experiment says `until`";
-  case SKIP_SAMPLED:
+  case SKIP_REFERENCES:
     return "where there is one";
   }
   return "no";

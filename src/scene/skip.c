@@ -6,7 +6,7 @@ const struct skip_row skip_rows[] = {
     {"gray", SKIP_GRAY, "one channel instead of three where all spectra are gray"},
     {"static-eye", SKIP_STATIC_EYE,
      "one eye pass for all iterations where the camera is not random"},
-    {"unseen", SKIP_UNSEEN, "photons in grid cells that none of them can see are not stored"},
+    {"unseen", SKIP_UNSEEN, "photons in grid cells that no point measured can see are not stored"},
     {"probes", SKIP_PROBES, "only the probes' pixels are computed"},
     {"media", SKIP_MEDIA,
      "no medium is asked for, and no photon in one stored, where there are none"},
@@ -14,7 +14,7 @@ const struct skip_row skip_rows[] = {
     {"tree", SKIP_TREE, "a few primitives are tested one after the other, without a tree"},
     {"last-bounce", SKIP_LAST, "no new direction after the last vertex of a photon path"},
     {"runs", SKIP_RUNS, "no more runs once rates are known as well as `until` asks"},
-    {"references", SKIP_SAMPLED, "a reference that is on disk is not sampled again"},
+    {"references", SKIP_REFERENCES, "a reference that is on disk is not sampled again"},
 };
 const int n_skip_rows = sizeof skip_rows / sizeof *skip_rows;
 

@@ -31,7 +31,7 @@ struct figure {
   double relative;         // the value where the unit of time is the calibration's
   // To the base, of the ratios of turns: the median, and quartiles. NAN: no base.
   double ratio, ratio_low, ratio_high;
-  struct seconds time;     // of all repetitions
+  struct seconds time; // of all repetitions
   int repetitions;
 };
 

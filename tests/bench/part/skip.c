@@ -74,7 +74,7 @@ static void rows(struct bench *bench) {
     if (!bench_wants(bench, "skip", skip->name)) continue;
     struct trial *trial[2] = {trial_of(bench, skip, false), trial_of(bench, skip, true)};
     trial_check_same(trial[0], trial[1], skip->bit == SKIP_RUNS);
-    if (skip->bit & (SKIP_RUNS | SKIP_SAMPLED))
+    if (skip->bit & (SKIP_RUNS | SKIP_REFERENCES))
       add(bench,
           arena_format(bench->arena, "%s/%s/run", skip->name, trial[0]->experiment.cell[0].scene),
           1, trial_run, trial[0], trial[1]);
