@@ -210,7 +210,8 @@ static const char *applies(enum skip bit, const struct scene *scene,
   case SKIP_MOTION:
     return features->motion ? "no, something moves" : "yes";
   case SKIP_TREE:
-    return scene->n_primitives > SKIP_FEW_PRIMITIVES ? "no, there are more" : "yes";
+    if (scene->n_primitives <= SKIP_FEW_PRIMITIVES || scene_is_few_triangles(scene)) return "yes";
+    return "no, there are more";
   case SKIP_UNSEEN:
     return "where a few points are measured";
   case SKIP_PROBES:

@@ -12,7 +12,7 @@ enum skip {
   SKIP_PROBES = 8,       // computing pixels nobody asked for
   SKIP_MEDIA = 16,       // asking for media, and for photons in them, where there are none
   SKIP_MOTION = 32,      // bringing a scene to its time in every iteration where nothing moves
-  SKIP_TREE = 64,        // a tree over at most SKIP_FEW_PRIMITIVES
+  SKIP_TREE = 64,        // a tree over at most SKIP_FEW_PRIMITIVES, or SKIP_FEW_TRIANGLES
   SKIP_LAST = 128,       // a direction after the last vertex of a photon path
   SKIP_RUNS = 256,       // runs after those that `until` needed
   SKIP_REFERENCES = 512, // references that are on disk
@@ -20,7 +20,7 @@ enum skip {
 
 // All in one leaf, or one of triangles and one of others. Of 3 or 4 a tree is as fast, of 9 (three
 // spheres) and 12 triangles 1.1 times faster.
-enum { SKIP_FEW_PRIMITIVES = 4 };
+enum { SKIP_FEW_PRIMITIVES = 4, SKIP_FEW_TRIANGLES = 48 };
 
 struct skip_row {
   const char *name;
