@@ -60,8 +60,8 @@ static bool find_emitted(const struct scene *scene, const struct shape *shape, s
     light->type->emit(scene, light, u, &emission);
     for (int c = 0; c < 3; c++)
       if (fabs(emission.flux[c] - light->power[c]) > round_off * light->power[c]) return false;
-    struct surface surface =
-        scene_surface(scene, &emission.ray, (struct hit){0, emission.ray.leaving});
+    struct surface surface;
+    scene_surface(scene, &emission.ray, (struct hit){0, emission.ray.leaving}, &surface);
     struct vec inwards = vec_sub(p, emission.ray.o);
     if (!(vec_dot(emission.ray.d, surface.ng) * vec_dot(inwards, surface.ng) > 0)) return false;
   }

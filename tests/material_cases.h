@@ -83,7 +83,9 @@ static inline const struct material *material_of(const struct scene *scene) {
 static inline struct bsdf material_bsdf(const struct scene *scene, double u) {
   struct surface surface = {
       .ng = vec(0, 0, 1), .ns = vec(0, 0, 1), .dpdu = vec(2, 0, 0), .uv = {0.385, 0.62}};
-  return surface_bsdf(scene, &surface, u);
+  struct bsdf out;
+  surface_bsdf(scene, &surface, u, &out);
+  return out;
 }
 
 // It draws from bsdf.u and, where it likes, from the directions: what it promises of f is the mean.

@@ -151,8 +151,10 @@ static void meet(struct light_tracer *state, double *frame) {
   connect_begin(walk);
   state->n_marks = 0;
   for (int j = 0; j < walk->n; j++) {
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+    struct surface surface;
+    scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
+    struct bsdf bsdf;
+    walk_bsdf(walk, j, &surface, &bsdf);
     if (!bsdf.type) continue;
     connect(state, j, &surface, &bsdf);
     if (!last && walk_scatter(walk, j, &surface, &bsdf) &&

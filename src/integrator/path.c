@@ -103,10 +103,12 @@ static bool meet_surface(const struct path *state, int j, bool last, double *fra
   struct walk *walk = state->walk;
   const struct shape *facet = last ? NULL : walk_facet(walk, j);
   if (facet && facet->light == LIGHT_NONE) return meet_facet(state, j);
-  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+  struct surface surface;
+  scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
   add_emission(state, j, &surface, frame);
   if (last) return false;
-  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  struct bsdf bsdf;
+  walk_bsdf(walk, j, &surface, &bsdf);
   if (!bsdf.type) return false;
   connect_surface(state, j, &bsdf, surface.p);
   return walk_scatter(walk, j, &surface, &bsdf);

@@ -23,7 +23,7 @@ struct bsdf {
   bool bent;              // n is not ng
   bool volume;            // a phase function: it has no normal
   double u;               // in [0, 1), of this vertex alone: what a random material draws from
-  double x[BSDF_NUMBERS]; // the type's own: reflectance, eta, roughness, ...
+  double x[BSDF_NUMBERS]; // the type's own, undefined where it reads none: reflectance, eta, ...
 };
 
 struct bsdf_sample {

@@ -307,7 +307,7 @@ bool scene_read_with(const char *path, struct scene_options, struct arena *, str
 bool scene_is_few_triangles(const struct scene *);
 
 // The surface a hit of this ray found.
-struct surface scene_surface(const struct scene *, const struct ray *, struct hit);
+void scene_surface(const struct scene *, const struct ray *, struct hit, struct surface *);
 
 static inline const struct material *scene_material(const struct scene *scene,
                                                     const struct surface *surface) {
@@ -324,7 +324,7 @@ static inline uint32_t surface_medium(const struct scene *scene, const struct su
 
 // The scattering at a surface; u: a uniform random number of this vertex (for MATERIAL_RANDOM).
 // type is NULL where nothing is scattered.
-struct bsdf surface_bsdf(const struct scene *, const struct surface *, double u);
+void surface_bsdf(const struct scene *, const struct surface *, double u, struct bsdf *);
 
 // How much of what arrives is stopped: alpha in [0, 1]; 0 of an interface.
 double surface_opacity(const struct scene *, const struct surface *);

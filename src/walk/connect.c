@@ -82,9 +82,10 @@ static bool sees(const struct scene *scene, const struct ray *ray, struct hit hi
   const struct shape *shape = &scene->shape[scene->shape_of[emitter]];
   if (shape->type->flat) return true;
   struct vec there = vec_along(ray->o, ray->d, distance);
-  struct vec ng_hit = scene_surface(scene, ray, hit).ng;
+  struct surface here;
+  scene_surface(scene, ray, hit, &here);
   struct vec ng_there = shape->type->normal(scene, shape, emitter, there);
-  return (vec_dot(ng_hit, ray->d) < 0) == (vec_dot(ng_there, ray->d) < 0);
+  return (vec_dot(here.ng, ray->d) < 0) == (vec_dot(ng_there, ray->d) < 0);
 }
 
 static void move_shadow(struct walk *walk, int to, int from) {
@@ -116,7 +117,8 @@ static void attenuate(struct walk *walk, int k, double distance) {
 static bool pass(struct walk *walk, int k) {
   struct shadow *shadow = &walk->shadow;
   if (!walk_meets_see_through(walk->scene, shadow->hit[k])) return false;
-  struct surface surface = scene_surface(walk->scene, &shadow->ray[k], shadow->hit[k]);
+  struct surface surface;
+  scene_surface(walk->scene, &shadow->ray[k], shadow->hit[k], &surface);
   double passed = 1 - surface_opacity(walk->scene, &surface);
   if (!(passed > 0)) return false;
   for (int c = 0; c < walk->n_channels; c++) shadow->value[c][k] *= passed;

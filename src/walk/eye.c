@@ -109,7 +109,8 @@ static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
     stop_at_facet(walk, j, facet, depth, point);
     return false;
   }
-  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+  struct surface surface;
+  scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
   struct vec wo = vec_scale(walk->ray[j].d, -1);
   if (walk->differential)
     differential_transfer(&walk->differential[j], walk->from[j], walk->ray[j].d, &surface);
@@ -118,7 +119,8 @@ static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
   for (int c = 0; c < walk->n_channels; c++)
     point->emitted[c] += walk->throughput[c][j] * emitted[c];
   if (walk->vertex >= depth) return false;
-  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  struct bsdf bsdf;
+  walk_bsdf(walk, j, &surface, &bsdf);
   double delta = bsdf.type ? bsdf_delta_probability(&bsdf, wo, TRANSPORT_RADIANCE) : 0;
   if (walk->u[1][0][j] < delta) return walk_scatter(walk, j, &surface, &bsdf);
   stop(walk, j, &surface, &bsdf, 1 - delta, point);

@@ -109,7 +109,8 @@ static bool scatter(const struct check *check, struct traveller *way, const stru
   double direction[2], choice[2];
   draw(check, way->number, vertex, 0, direction);
   draw(check, way->number, vertex, 1, choice);
-  struct bsdf bsdf = surface_bsdf(scene, surface, choice[1]);
+  struct bsdf bsdf;
+  surface_bsdf(scene, surface, choice[1], &bsdf);
   struct bsdf_sample sample;
   const double u[3] = {direction[0], direction[1], choice[0]};
   if (!bsdf.type || !bsdf_sample(&bsdf, vec_scale(way->ray.d, -1), u, TRANSPORT_RADIANCE, &sample))
@@ -142,7 +143,8 @@ static bool step(struct check *check, int vertex) {
       if (!may_leave(check, way)) return false;
       continue;
     }
-    struct surface surface = scene_surface(check->scene, &way->ray, check->hit[j]);
+    struct surface surface;
+    scene_surface(check->scene, &way->ray, check->hit[j], &surface);
     if (!fits(check, way, &surface)) return false;
     if (go_on(check, way, &surface, vertex)) check->way[alive++] = *way;
   }

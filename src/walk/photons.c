@@ -48,7 +48,8 @@ struct pass {
 uint32_t photons_start_in(const struct scene *scene, const struct light *light,
                           const struct ray *ray) {
   if (ray->leaving == PRIMITIVE_NONE) return light->medium;
-  struct surface surface = scene_surface(scene, ray, (struct hit){0, ray->leaving});
+  struct surface surface;
+  scene_surface(scene, ray, (struct hit){0, ray->leaving}, &surface);
   const struct shape *shape = &scene->shape[surface.shape];
   return vec_dot(ray->d, surface.ng) > 0 ? shape->outside : shape->inside;
 }
@@ -115,7 +116,8 @@ static void store_passed(struct walk *walk, const struct pass *pass) {
   for (int k = 0; k < crossing->n_passed; k++) {
     const struct surface *surface = &crossing->surface[k];
     if (scene_material(walk->scene, surface)->type->passed) continue;
-    struct bsdf bsdf = surface_bsdf(walk->scene, surface, 0);
+    struct bsdf bsdf;
+    surface_bsdf(walk->scene, surface, 0, &bsdf);
     store_on_surface(walk, crossing->passed[k], pass, surface, &bsdf);
   }
 }
@@ -138,8 +140,10 @@ static bool meet_one(struct walk *walk, int j, const struct pass *pass, bool las
     store_at(walk, j, pass, walk_point(walk, j));
     return !last && walk_scatter_facet(walk, j);
   }
-  struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-  struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+  struct surface surface;
+  scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
+  struct bsdf bsdf;
+  walk_bsdf(walk, j, &surface, &bsdf);
   store_on_surface(walk, j, pass, &surface, &bsdf);
   return !last && bsdf.type && walk_scatter(walk, j, &surface, &bsdf);
 }

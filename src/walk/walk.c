@@ -134,7 +134,8 @@ static void decide_crossings(struct walk *walk) {
   crossing->n_passed = 0;
   for (int k = 0; k < crossing->n; k++) {
     int j = crossing->slot[k];
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+    struct surface surface;
+    scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
     if (crossing->u[0][k] < surface_opacity(walk->scene, &surface)) continue;
     int to = crossing->n_passed++;
     if (walk->medium && scene_material(walk->scene, &surface)->type->passed)
@@ -184,8 +185,8 @@ void walk_vertex_random(struct walk *walk) {
     walk_random(walk, 2, pair_of_vertex(walk->vertex, VERTEX_LIGHT));
 }
 
-struct bsdf walk_bsdf(const struct walk *walk, int j, const struct surface *surface) {
-  return surface_bsdf(walk->scene, surface, walk->features.random_materials ? walk->u[2][1][j] : 0);
+void walk_bsdf(const struct walk *walk, int j, const struct surface *surface, struct bsdf *bsdf) {
+  surface_bsdf(walk->scene, surface, walk->features.random_materials ? walk->u[2][1][j] : 0, bsdf);
 }
 
 // Roulette with u[1][1] of path j, whose weight its last scattering multiplies by up to `weight`.

@@ -144,7 +144,7 @@ void walk_drop_escaped(struct walk *);
 void walk_vertex_random(struct walk *);
 
 // The scattering at the surface that path j has hit.
-struct bsdf walk_bsdf(const struct walk *, int j, const struct surface *);
+void walk_bsdf(const struct walk *, int j, const struct surface *, struct bsdf *);
 
 // Moves path `from` to place `to` (closing gaps keeps the order).
 void walk_move(struct walk *, int to, int from);

@@ -53,8 +53,10 @@ static void scatter(struct walk *walk) {
   walk_drop_escaped(walk);
   walk_vertex_random(walk);
   for (int j = 0; j < walk->n; j++) {
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+    struct surface surface;
+    scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
+    struct bsdf bsdf;
+    walk_bsdf(walk, j, &surface, &bsdf);
     if (bsdf.type && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   walk->n = alive;
@@ -82,7 +84,8 @@ struct rays rays_to_lights(const struct bench_scene *scene, const struct rays *f
   for (int j = 0; j < from->n; j++) {
     const struct ray *ray = &from->ray[j];
     if (from->hit[j].primitive == PRIMITIVE_NONE) continue;
-    struct surface surface = scene_surface(&scene->scene, ray, from->hit[j]);
+    struct surface surface;
+    scene_surface(&scene->scene, ray, from->hit[j], &surface);
     struct light_sample sample;
     double u[2], choice, unused;
     uint64_t path = (uint64_t)j;

@@ -56,7 +56,9 @@ static struct bsdf bent_bsdf(const struct scene *scene, struct vec p, struct dra
   struct surface surface = {.p = p, .ng = vec(0, 0, 1), .dpdu = vec(1, 0.3, 0), .uv = {p.x, p.y}};
   surface.ns = vec_normalize(vec(0.4 * p.x + 0.1, 0.2 - 0.5 * p.y, 1));
   draw_pair(draw, &u, &unused);
-  return surface_bsdf(scene, &surface, u);
+  struct bsdf out;
+  surface_bsdf(scene, &surface, u, &out);
+  return out;
 }
 
 // A path's first two vertices: false if it misses the square or scatters nowhere.

@@ -150,7 +150,8 @@ static void sample_material(const struct scene *scene, struct vec wo, struct dra
   struct surface surface = {.ng = {0, 0, 1}, .ns = {0, 0, 1}, .dpdu = {1, 0, 0}};
   for (int i = 0; i < N; i++) {
     double u[3];
-    struct bsdf bsdf = surface_bsdf(scene, &surface, one(draw));
+    struct bsdf bsdf;
+    surface_bsdf(scene, &surface, one(draw), &bsdf);
     struct bsdf_sample sample;
     three(draw, u);
     if (bsdf_sample(&bsdf, wo, u, TRANSPORT_RADIANCE, &sample))

@@ -220,8 +220,8 @@ static void test_pdf_consistent(void **state) {
       stream_read(&stream, j, u);
       if (!light->type->sample(&scene, light, p, u, &nee)) continue;
       struct ray ray = {p, nee.wi, INFINITY, PRIMITIVE_NONE};
-      struct surface surface =
-          scene_surface(&scene, &ray, (struct hit){nee.distance, nee.primitive});
+      struct surface surface;
+      scene_surface(&scene, &ray, (struct hit){nee.distance, nee.primitive}, &surface);
       double pdf = light->type->pdf(&scene, light, p, &surface, nee.wi);
       assert_true(fabs(pdf / nee.pdf_solid_angle - 1) < 1e-9); // grazing cosines on the sphere
       light->type->radiance(&scene, light, &surface, vec_scale(nee.wi, -1), rgb);

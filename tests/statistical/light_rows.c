@@ -157,7 +157,8 @@ static void seen(const struct scene *scene, const struct ray *ray, struct hit hi
     if (light->type->background) light->type->background(scene, light, ray->d, rgb);
     return;
   }
-  struct surface surface = scene_surface(scene, ray, hit);
+  struct surface surface;
+  scene_surface(scene, ray, hit, &surface);
   if (scene->shape[surface.shape].light == LIGHT_NONE) return;
   light->type->radiance(scene, light, &surface, vec_scale(ray->d, -1), rgb);
   double opacity = surface_opacity(scene, &surface);

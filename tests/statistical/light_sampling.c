@@ -277,7 +277,8 @@ static double seen(const void *of, double a, double b) {
   struct hit hit;
   bvh_closest_brute_force(lit->scene, &ray, &hit, 1);
   if (hit.primitive == PRIMITIVE_NONE) return 0;
-  struct surface surface = scene_surface(lit->scene, &ray, hit);
+  struct surface surface;
+  scene_surface(lit->scene, &ray, hit, &surface);
   if (lit->scene->shape[surface.shape].light == LIGHT_NONE) return 0;
   return lit->light->type->pdf(lit->scene, lit->light, ray.o, &surface, ray.d) > 0
              ? directions_measure(a)

@@ -249,7 +249,8 @@ static double radiance_of_pixel(const struct scene *scene, struct pixel pixel, d
     struct hit hit;
     bvh_closest(bvh_build(scene, (struct bvh_options){0}, &arena), &ray, &hit, 1);
     assert_int_not_equal(hit.primitive, PRIMITIVE_NONE);
-    struct surface surface = scene_surface(scene, &ray, hit);
+    struct surface surface;
+    scene_surface(scene, &ray, hit, &surface);
     struct vec n = vec_dot(surface.ng, ray.d) > 0 ? vec_scale(surface.ng, -1) : surface.ng;
     if (!light->type->closed_form(scene, light, surface.p, n, &form)) return NAN;
     sum += weight[k % 5] * weight[k / 5] / 4 * form.irradiance[0];

@@ -204,8 +204,10 @@ static void scatter_all(struct walk *walk) {
   int alive = 0;
   walk_vertex_random(walk);
   for (int j = 0; j < walk->n; j++) {
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+    struct surface surface;
+    scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
+    struct bsdf bsdf;
+    walk_bsdf(walk, j, &surface, &bsdf);
     if (walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   walk->n = alive;

@@ -58,12 +58,14 @@ static void meet(const struct chance *state, double *frame) {
   int alive = 0;
   if (!last) walk_vertex_random(walk);
   for (int j = 0; j < walk->n; j++) {
-    struct surface surface = scene_surface(walk->scene, &walk->ray[j], walk->hit[j]);
+    struct surface surface;
+    scene_surface(walk->scene, &walk->ray[j], walk->hit[j], &surface);
     double emitted[3];
     eye_emitted(walk->scene, &surface, vec_scale(walk->ray[j].d, -1), emitted);
     add(state, j, emitted, frame);
     if (last) continue;
-    struct bsdf bsdf = walk_bsdf(walk, j, &surface);
+    struct bsdf bsdf;
+    walk_bsdf(walk, j, &surface, &bsdf);
     if (bsdf.type && walk_scatter(walk, j, &surface, &bsdf)) walk_move(walk, alive++, j);
   }
   walk->n = alive;

@@ -23,7 +23,9 @@ static struct bsdf bsdf_of(const char *material, double u) {
   snprintf(text, sizeof text, "WorldBegin LightSource \"point\" %s Shape \"disk\"", material);
   scene = scene_of(text);
   struct surface surface = {.ng = {0, 0, 1}, .ns = {0, 0, 1}, .dpdu = {1, 0, 0}};
-  return surface_bsdf(&scene, &surface, u);
+  struct bsdf out;
+  surface_bsdf(&scene, &surface, u, &out);
+  return out;
 }
 
 static double value(const struct bsdf *bsdf, struct vec wo, struct vec wi) {

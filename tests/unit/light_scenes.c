@@ -25,7 +25,9 @@ static struct surface seen(const struct scene *scene, int x, int y) {
     if (shape->type->intersect(scene, shape, k, &ray, &t) && t < hit.t) hit = (struct hit){t, k};
   }
   assert_true(hit.t < INFINITY);
-  return scene_surface(scene, &ray, hit);
+  struct surface out;
+  scene_surface(scene, &ray, hit, &out);
+  return out;
 }
 
 // Along d from a surface: the distance to what is hit, INFINITY if nothing.

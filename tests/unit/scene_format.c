@@ -15,7 +15,8 @@ static void assert_position(const struct scene *scene, uint32_t row, double x, d
 static double reflectance_of(const struct scene *scene, uint32_t shape) {
   struct vec n = vec(0, 0, 1);
   struct surface surface = {.shape = shape, .ng = n, .ns = n};
-  struct bsdf bsdf = surface_bsdf(scene, &surface, 0.5);
+  struct bsdf bsdf;
+  surface_bsdf(scene, &surface, 0.5, &bsdf);
   double f[3];
   bsdf_value(&bsdf, n, n, TRANSPORT_RADIANCE, f);
   return f[0] * acos(-1.0);

@@ -82,7 +82,8 @@ static void what_the_file_does_not_say_has_pbrts_default(void **state) {
   assert_true(isnan(settings->radius) && isnan(settings->alpha));
   assert_true(settings->photons == 0 && settings->iterations == 0 && settings->seed == -1);
   struct surface surface = {.ng = vec(0, 0, 1), .ns = vec(0, 0, 1)};
-  struct bsdf bsdf = surface_bsdf(&scene, &surface, 0);
+  struct bsdf bsdf;
+  surface_bsdf(&scene, &surface, 0, &bsdf);
   double f[3];
   bsdf_value(&bsdf, vec(0, 0, 1), vec(0, 0, 1), TRANSPORT_RADIANCE, f);
   assert_true(fabs(f[0] - 0.5 / acos(-1.0)) <= DBL_EPSILON);
@@ -256,7 +257,8 @@ static void a_surface_is_the_hit_point_and_its_normal(void **state) {
   struct ray ray = {vec(0, 0, 2), vec(0, 0, 0.5), INFINITY, PRIMITIVE_NONE};
   double t;
   assert_true(scene.shape[1].type->intersect(&scene, &scene.shape[1], 1, &ray, &t));
-  struct surface surface = scene_surface(&scene, &ray, (struct hit){t, 1});
+  struct surface surface;
+  scene_surface(&scene, &ray, (struct hit){t, 1}, &surface);
   assert_int_equal(surface.shape, 1);
   assert_int_equal(surface.primitive, 1);
   assert_vec(surface.p, 0, 0, 4);

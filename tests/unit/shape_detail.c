@@ -450,7 +450,8 @@ static void normals_of_vertices_are_interpolated_and_choose_the_side(void **stat
       const double *x = cases_n[c].x, *n = cases_n[c].ns;
       struct ray ray = {vec(x[0], x[1], 5), vec(0, 0, -1), INFINITY, PRIMITIVE_NONE};
       assert_true(scene.shape[0].detailed);
-      struct surface surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+      struct surface surface;
+      scene_surface(&scene, &ray, (struct hit){5, 0}, &surface);
       assert_vec(surface.ns, n[0], n[1], n[2]);
       assert_vec(surface.ng, 0, 0, cases_n[c].ng);
     }
@@ -463,7 +464,8 @@ static void normals_that_cancel_are_none(void **state) {
       scene_of("WorldBegin LightSource \"point\" Shape \"trianglemesh\" \"point3 P\" "
                "[0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 0 -1 0 0 0]");
   struct ray ray = {vec(0.5, 0, 5), vec(0, 0, -1), INFINITY, PRIMITIVE_NONE};
-  struct surface surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+  struct surface surface;
+  scene_surface(&scene, &ray, (struct hit){5, 0}, &surface);
   assert_vec(surface.ns, 0, 0, 1);
   assert_vec(surface.ng, 0, 0, 1);
 }
@@ -476,10 +478,11 @@ static void tangents_of_vertices_are_interpolated(void **state) {
       "WorldBegin LightSource \"point\" ReverseOrientation Scale 1 2 -1 Shape \"trianglemesh\" "
       "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"float alpha\" 0.5 \"vector3 S\" [0 2 0 1 0 1 -1 0 -1]");
   struct ray ray = {vec(0.5, 0, 5), vec(0, 0, -1), INFINITY, PRIMITIVE_NONE};
-  struct surface surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+  struct surface surface;
+  scene_surface(&scene, &ray, (struct hit){5, 0}, &surface);
   assert_vec(vec_normalize(surface.dpdu), 0.5, 2, -0.5);
   ray.o = vec(0.5, 1, 5); // between the last two
-  surface = scene_surface(&scene, &ray, (struct hit){5, 0});
+  scene_surface(&scene, &ray, (struct hit){5, 0}, &surface);
   assert_vec(vec_normalize(surface.dpdu), 1, 0, 0);
 }
 
@@ -505,7 +508,8 @@ static void a_ply_file_may_hold_triangles_and_quads(void **state) {
   struct ray ray = {vec(11.3, 0.2, 9), vec(0, 0, -1), INFINITY, PRIMITIVE_NONE};
   double t;
   assert_true(scene.shape[0].type->intersect(&scene, &scene.shape[0], 0, &ray, &t));
-  struct surface surface = scene_surface(&scene, &ray, (struct hit){t, 0});
+  struct surface surface;
+  scene_surface(&scene, &ray, (struct hit){t, 0}, &surface);
   assert_true(fabs(surface.uv[0] - 1.3) <= 1e-6 && fabs(surface.uv[1] - 0.2) <= 1e-6);
 }
 

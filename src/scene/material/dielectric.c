@@ -65,6 +65,7 @@ static void bsdf(const struct scene *scene, const struct material *material,
   struct dielectric m = dielectric_of(glass->eta, roughness_at(&glass->roughness, surface));
   out->type = &boundary;
   out->x[0] = m.eta;
+  out->x[1] = 0;
   if (m.facets.smooth) return;
   out->x[1] = m.facets.alpha_x;
   out->x[2] = m.facets.alpha_y;
