@@ -142,12 +142,16 @@ static void meet(const struct path *state, double *frame) {
     walk_random(walk, 3, pair_of_vertex(walk->vertex, VERTEX_EMITTER));
   }
   connect_begin(walk);
-  for (int j = 0; j < walk->n; j++) {
-    if (!last && j % FACETS == 0) walk_sample_facets(walk, j);
-    bool on = walk_collided(walk, j) ? meet_medium(state, j, last, frame)
-                                     : meet_surface(state, j, last, frame);
-    if (on && !light_path_ends(walk->kind[j], state->measure->left_out))
-      walk_move(walk, alive++, j);
+  for (int first = 0; first < walk->n; first += FACETS) {
+    int on[FACETS], n = 0, count = walk_sample_facets(walk, first);
+    for (int j = first; j < first + count; j++) {
+      bool lives = walk_collided(walk, j) ? meet_medium(state, j, last, frame)
+                                          : meet_surface(state, j, last, frame);
+      on[n] = j;
+      n += lives && !light_path_ends(walk->kind[j], state->measure->left_out);
+    }
+    walk_pack(walk, alive, on, n);
+    alive += n;
   }
   connect_finish(walk, frame);
   walk->n = alive;

@@ -25,7 +25,8 @@ void eye_rays(struct walk *walk, const struct pixel *pixel, int n, bool footprin
       filter->type->sample(filter, (double[2]){walk->u[0][0][j], walk->u[0][1][j]}, offset);
     if (lens) u[0] = walk->u[1][0][j], u[1] = walk->u[1][1][j];
     double x = pixel[j].x + 0.5 + offset[0], y = pixel[j].y + 0.5 + offset[1];
-    walk_start(walk, j, camera_ray(camera, x, y, lens ? u : NULL));
+    struct ray ray = camera_ray(camera, x, y, lens ? u : NULL);
+    walk_start(walk, j, ray.o, ray.d, PRIMITIVE_NONE);
     if (walk->differential)
       walk->differential[j] = differential_of_camera(camera, x, y, lens ? u : NULL);
     walk->owner[j] = j;

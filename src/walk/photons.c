@@ -65,7 +65,7 @@ void photons_emit(struct walk *walk) {
     double u[LIGHT_U] = {walk->u[1][0][j], walk->u[1][1][j], walk->u[2][0][j], walk->u[2][1][j]};
     struct emission emission;
     light->type->emit(scene, light, u, &emission);
-    walk_start(walk, j, emission.ray);
+    walk_start(walk, j, emission.ray.o, emission.ray.d, emission.ray.leaving);
     walk->kind[j] = LIGHT_PATH_DIRECT;
     if (walk->medium) walk->medium[j] = photons_start_in(scene, light, &emission.ray);
     for (int c = 0; c < walk->n_channels; c++)
@@ -155,9 +155,14 @@ static void meet(struct walk *walk, const struct pass *pass) {
   walk_vertex_random(walk);
   photons_reserve(pass->to->surface.photons, walk->n, pass->arena);
   if (pass->to->volume.photons) photons_reserve(pass->to->volume.photons, walk->n, pass->arena);
-  for (int j = 0; j < walk->n; j++) {
-    if (j % FACETS == 0) walk_sample_facets(walk, j);
-    if (meet_one(walk, j, pass, last)) walk_move(walk, alive++, j);
+  for (int first = 0; first < walk->n; first += FACETS) {
+    int on[FACETS], n = 0, count = walk_sample_facets(walk, first);
+    for (int j = first; j < first + count; j++) {
+      on[n] = j;
+      n += meet_one(walk, j, pass, last);
+    }
+    walk_pack(walk, alive, on, n);
+    alive += n;
   }
   walk->n = alive;
 }

@@ -80,28 +80,28 @@ void walk_random(struct walk *walk, int slot, uint32_t pair) {
            walk->u[slot][1]);
 }
 
-void walk_start(struct walk *walk, int j, struct ray ray) {
-  walk->ray[j] = ray;
-  walk->from[j] = ray.o;
+#define MOVE(array)                                                                                \
+  for (int k = 0; k < n; k++) (array)[to + k] = (array)[from[k]]
+
+void walk_pack(struct walk *walk, int to, const int *from, int n) {
+  while (n > 0 && *from == to) n--, from++, to++;
+  MOVE(walk->path);
+  MOVE(walk->ray);
+  MOVE(walk->hit);
+  MOVE(walk->from);
+  MOVE(walk->pdf);
+  MOVE(walk->owner);
+  MOVE(walk->kind);
+  if (walk->differential) MOVE(walk->differential);
+  if (walk->medium) {
+    MOVE(walk->medium);
+    MOVE(walk->collision);
+  }
+  if (walk->owed) MOVE(walk->owed);
+  for (int c = 0; c < walk->n_channels; c++) MOVE(walk->throughput[c]);
 }
 
-void walk_move(struct walk *walk, int to, int from) {
-  if (to == from) return;
-  walk->path[to] = walk->path[from];
-  walk->ray[to] = walk->ray[from];
-  walk->hit[to] = walk->hit[from];
-  walk->from[to] = walk->from[from];
-  walk->pdf[to] = walk->pdf[from];
-  walk->owner[to] = walk->owner[from];
-  if (walk->differential) walk->differential[to] = walk->differential[from];
-  walk->kind[to] = walk->kind[from];
-  if (walk->medium) {
-    walk->medium[to] = walk->medium[from];
-    walk->collision[to] = walk->collision[from];
-  }
-  if (walk->owed) walk->owed[to] = walk->owed[from];
-  for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][to] = walk->throughput[c][from];
-}
+void walk_move(struct walk *walk, int to, int from) { walk_pack(walk, to, &from, 1); }
 
 // ---- passing through surfaces ----
 // What opacity stops is random: one number a crossing decides, so that the average over iterations
@@ -170,10 +170,13 @@ void walk_trace_through(struct walk *walk) {
 }
 
 void walk_drop_escaped(struct walk *walk) {
-  int alive = 0;
-  for (int j = 0; j < walk->n; j++)
-    if (!walk_escaped(walk, j)) walk_move(walk, alive++, j);
-  walk->n = alive;
+  int here[WALK_BATCH], n = 0;
+  for (int j = 0; j < walk->n; j++) {
+    here[n] = j;
+    n += !walk_escaped(walk, j);
+  }
+  walk_pack(walk, 0, here, n);
+  walk->n = n;
 }
 
 // ---- scattering ----
@@ -221,7 +224,7 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
   if (walk->differential && walk->transport == TRANSPORT_RADIANCE)
     differential_scatter(&walk->differential[j], walk->scene, surface, bsdf->n, walk->ray[j].d,
                          sample.wi, sample.eta2);
-  walk_start(walk, j, (struct ray){surface->p, sample.wi, INFINITY, surface->primitive});
+  walk_start(walk, j, surface->p, sample.wi, surface->primitive);
   if (walk->medium)
     walk->medium[j] = surface_medium(walk->scene, surface, sample.wi, walk->medium[j]);
   walk->pdf[j] = sample.pdf;
@@ -246,7 +249,7 @@ void walk_facet_bsdf(const struct walk *walk, int j, const struct shape *shape, 
   for (int c = 0; c < 3; c++) bsdf->x[c] = shape->bsdf->x[c];
 }
 
-void walk_sample_facets(struct walk *walk, int first) {
+int walk_sample_facets(struct walk *walk, int first) {
   struct facets *facets = &walk->block.facets;
   int n = 0, count = walk->n - first < FACETS ? walk->n - first : FACETS;
   walk->block.first = first;
@@ -263,6 +266,7 @@ void walk_sample_facets(struct walk *walk, int first) {
     walk->block.row[k] = (int8_t)n++;
   }
   LEVEL_TABLE(facets_level)->sample(facets, n);
+  return count;
 }
 
 bool walk_scatter_facet(struct walk *walk, int j) {
@@ -276,7 +280,7 @@ bool walk_scatter_facet(struct walk *walk, int j) {
   for (int c = 0; c < walk->n_channels; c++) walk->throughput[c][j] *= albedo[c] / divisor;
   struct vec wi = {facets->wi[0][row], facets->wi[1][row], facets->wi[2][row]};
   struct vec p = walk_point(walk, j);
-  walk_start(walk, j, (struct ray){p, wi, INFINITY, walk->hit[j].primitive});
+  walk_start(walk, j, p, wi, walk->hit[j].primitive);
   walk->pdf[j] = facets->pdf[row];
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);
   return true;
@@ -298,7 +302,7 @@ bool walk_scatter_in_medium(struct walk *walk, int j) {
   for (int c = 0; c < walk->n_channels; c++)
     walk->throughput[c][j] = collision->weight[c] * at->sigma_s[c] * sample.weight[c] / divisor;
   struct vec p = walk_point(walk, j);
-  walk_start(walk, j, (struct ray){p, sample.wi, INFINITY, PRIMITIVE_NONE});
+  walk_start(walk, j, p, sample.wi, PRIMITIVE_NONE);
   walk->pdf[j] = sample.pdf;
   walk->kind[j] = (uint8_t)light_path_after(walk->kind[j], false);
   return true;

@@ -109,7 +109,14 @@ void walk_begin(struct walk *, uint64_t seed, uint64_t run, uint64_t i);
 void walk_random(struct walk *, int slot, uint32_t pair);
 
 // Starts segment j: ray and from.
-void walk_start(struct walk *, int j, struct ray);
+static inline void walk_start(struct walk *walk, int j, struct vec o, struct vec d,
+                              uint32_t leaving) {
+  struct ray *ray = &walk->ray[j];
+  ray->o = walk->from[j] = o;
+  ray->d = d;
+  ray->t_max = INFINITY;
+  ray->leaving = leaving;
+}
 
 // Closest hits of all rays. Where the scene has see-through shapes the paths before one are listed
 // in `crossing`, and walk_cross lets each of them pass or not, until none is listed.
@@ -149,6 +156,10 @@ void walk_bsdf(const struct walk *, int j, const struct surface *, struct bsdf *
 // Moves path `from` to place `to` (closing gaps keeps the order).
 void walk_move(struct walk *, int to, int from);
 
+// The same for n paths, in ascending order, to places `to` and on: a while after they were written,
+// as a load of what two stores wrote waits until both are in the cache.
+void walk_pack(struct walk *, int to, const int *from, int n);
+
 // Samples the bsdf with u[0] (direction) and u[1] (choice, roulette) of path j. Roulette survives
 // with the largest channel of the weight, the scaling of radiance by refraction left out.
 // False: absorbed. True: ray, from, throughput, pdf and kind are those of the next segment.
@@ -161,9 +172,9 @@ const struct shape *walk_facet_shape(const struct walk *, int j);
 // Its scattering; of the frame only n.
 void walk_facet_bsdf(const struct walk *, int j, const struct shape *, struct bsdf *);
 
-// Where up to FACETS paths from `first` on, those that have hit Lambertian facets, are scattered
-// to: u[0] (direction) of each.
-void walk_sample_facets(struct walk *, int first);
+// Where the paths of the block from `first` on that have hit Lambertian facets are scattered to:
+// u[0] (direction) of each. How many paths are in the block, up to FACETS.
+int walk_sample_facets(struct walk *, int first);
 
 // walk_facet_shape of a path of the block.
 static inline const struct shape *walk_facet(const struct walk *walk, int j) {

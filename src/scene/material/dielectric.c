@@ -43,10 +43,10 @@ static bool sample(const struct bsdf *bsdf, struct vec wo, const double u[3],
   struct dielectric m = unpack(bsdf);
   struct dielectric_sample chosen;
   if (!dielectric_sample(&m, wo, u, transport, &chosen)) return false;
-  *out = (struct bsdf_sample){
-      chosen.wi, {chosen.weight, chosen.weight, chosen.weight}, chosen.pdf, .eta2 = 1};
-  if (m.facets.smooth) out->pdf = 0;
-  if (transport == TRANSPORT_RADIANCE) out->eta2 = chosen.eta_path * chosen.eta_path;
+  out->wi = chosen.wi;
+  for (int c = 0; c < 3; c++) out->weight[c] = chosen.weight;
+  out->pdf = m.facets.smooth ? 0 : chosen.pdf;
+  out->eta2 = transport == TRANSPORT_RADIANCE ? chosen.eta_path * chosen.eta_path : 1;
   return true;
 }
 

@@ -83,10 +83,11 @@ struct dielectric_sample {
 static inline bool dielectric_sample_smooth(const struct dielectric *m, struct vec wo, double u,
                                             struct dielectric_sample *out) {
   double fresnel = fresnel_dielectric(wo.z, m->eta);
-  *out = (struct dielectric_sample){vec(-wo.x, -wo.y, wo.z), 1, fresnel, 1};
-  if (u < fresnel) return true;
-  out->pdf = 1 - fresnel;
-  return fresnel_refract(wo, vec(0, 0, 1), m->eta, &out->eta_path, &out->wi);
+  bool reflects = u < fresnel;
+  out->weight = out->eta_path = 1;
+  out->pdf = reflects ? fresnel : 1 - fresnel;
+  out->wi = vec(-wo.x, -wo.y, wo.z);
+  return reflects || fresnel_refract(wo, vec(0, 0, 1), m->eta, &out->eta_path, &out->wi);
 }
 
 static inline bool dielectric_sample_rough(const struct dielectric *m, struct vec wo,

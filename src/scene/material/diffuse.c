@@ -38,10 +38,10 @@ static bool sample(const struct bsdf *bsdf, struct vec wo, const double u[3],
   (void)transport;
   double r = sqrt(u[0]), z = sqrt(1 - u[0]), sine, cosine;
   num_sincos_turns(u[1], &sine, &cosine);
-  *out = (struct bsdf_sample){.wi = vec(r * cosine, r * sine, wo.z < 0 ? -z : z),
-                              .weight = {bsdf->x[0], bsdf->x[1], bsdf->x[2]},
-                              .pdf = z * one_over_pi,
-                              .eta2 = 1};
+  out->wi = vec(r * cosine, r * sine, wo.z < 0 ? -z : z);
+  for (int c = 0; c < 3; c++) out->weight[c] = bsdf->x[c];
+  out->pdf = z * one_over_pi;
+  out->eta2 = 1;
   return true;
 }
 
