@@ -90,6 +90,7 @@ static void fill_constants(struct scene *scene, struct shape *shape, struct aren
   struct surface surface = {.primitive = shape->first, .shape = (uint32_t)(shape - scene->shape)};
   material->type->bsdf(scene, material, &surface, bsdf);
   shape->bsdf = bsdf;
+  shape->lambert = faceted && bsdf->type && bsdf->type->lambert && shape->inside == shape->outside;
 }
 
 static bool moves(const struct scene *scene, uint32_t shape) {

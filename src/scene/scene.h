@@ -57,6 +57,7 @@ struct shape {
   bool see_through;           // a ray may pass: alpha, or a material that is an interface
   bool faceted;               // a normal of its own for each primitive, in scene.facet
   const struct bsdf *bsdf;    // of every point, but for the frame; NULL: it depends on the point
+  bool lambert;               // faceted and Lambertian, the same at every point, in one medium
   uint32_t inside, outside;   // rows of scene.medium or MEDIUM_NONE, behind and before ng; where they
                               // differ, what crosses the shape changes its medium
 };

@@ -1,5 +1,5 @@
-// Flat surfaces that scatter as Lambert says, the same at every point (shape.faceted, shape.bsdf):
-// most of what most paths meet. They are sampled a block at a time, to the same bits as by bsdf.h.
+// Flat surfaces that scatter as Lambert says, the same at every point (shape.lambert): most of what
+// most paths meet. They are sampled a block at a time, to the same bits as by bsdf.h.
 #ifndef WALK_FACETS_H
 #define WALK_FACETS_H
 

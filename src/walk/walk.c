@@ -233,15 +233,6 @@ bool walk_scatter(struct walk *walk, int j, const struct surface *surface,
 }
 
 // ---- facets ----
-const struct shape *walk_facet_shape(const struct walk *walk, int j) {
-  uint32_t primitive = walk->hit[j].primitive;
-  if (primitive == PRIMITIVE_NONE || walk->differential) return NULL;
-  const struct shape *shape = &walk->scene->shape[walk->scene->shape_of[primitive]];
-  bool facet = shape->faceted && shape->bsdf && shape->bsdf->type && shape->bsdf->type->lambert &&
-               shape->inside == shape->outside;
-  return facet ? shape : NULL;
-}
-
 void walk_facet_bsdf(const struct walk *walk, int j, const struct shape *shape, struct bsdf *bsdf) {
   bsdf->type = shape->bsdf->type;
   bsdf->n = bsdf->ng = walk->scene->facet[walk->hit[j].primitive];

@@ -167,7 +167,12 @@ bool walk_scatter(struct walk *, int j, const struct surface *, const struct bsd
 
 // The Lambertian facet that path j has hit, which is met the same at every point; NULL: something
 // else, or a path that carries differentials (they need more of a surface).
-const struct shape *walk_facet_shape(const struct walk *, int j);
+static inline const struct shape *walk_facet_shape(const struct walk *walk, int j) {
+  uint32_t primitive = walk->hit[j].primitive;
+  if (primitive == PRIMITIVE_NONE || walk->differential) return NULL;
+  const struct shape *shape = &walk->scene->shape[walk->scene->shape_of[primitive]];
+  return shape->lambert ? shape : NULL;
+}
 
 // Its scattering; of the frame only n.
 void walk_facet_bsdf(const struct walk *, int j, const struct shape *, struct bsdf *);

@@ -56,6 +56,7 @@ static void constants_are_only_where_nothing_varies(void **state) {
   assert_true(!scene.shape[2].faceted && scene.shape[2].bsdf); // sphere
   assert_false(scene.shape[3].faceted);                        // normals of vertices
   assert_false(scene.shape[4].faceted);                        // moves
+  for (int s = 0; s < 5; s++) assert_int_equal(scene.shape[s].lambert, s == 0);
   struct vec n = scene.facet[scene.shape[0].first];
   assert_true(n.x == 0 && n.y == 0 && n.z == -1); // ReverseOrientation
 }
