@@ -85,23 +85,29 @@ accepts(const struct cones *c, const struct few_triangle *triangle, int x, int y
   return lanes_or(lanes_at_most(zero, low), lanes_at_most(high, zero));
 }
 
-// The t of what is accepted, where it is a hit.
+// t = above / below of the triangle's plane. Returns where that may be positive.
 static inline __attribute__((always_inline)) lanes_some
-meets(const struct cones *c, const struct few_triangle *triangle, lanes *t) {
-  lanes near = {0}, far = near + INFINITY, zero = {0}, from[3];
+ahead(const struct cones *c, const struct few_triangle *triangle, lanes *above, lanes *below) {
+  const double *n = triangle->n, *p = triangle->vertex[0];
+  lanes zero = {0};
+  *above = n[0] * (p[0] - c->o[0]) + n[1] * (p[1] - c->o[1]) + n[2] * (p[2] - c->o[2]);
+  *below = n[0] * c->d[0] + n[1] * c->d[1] + n[2] * c->d[2];
+  return lanes_alike(lanes_less(zero, *above), lanes_less(zero, *below));
+}
+
+// Where this t is a hit, as it is within the clip of the triangle's box.
+static inline __attribute__((always_inline)) lanes_some
+clip(const struct cones *c, const struct few_triangle *triangle, lanes *t) {
+  lanes near = {0}, far = near + INFINITY, zero = {0};
 #pragma GCC unroll 3
   for (int k = 0; k < 3; k++) {
     lanes lo = triangle->lo[k] - c->o[k], hi = triangle->hi[k] - c->o[k];
     // The product of the face by which the axis is entered is the smaller: rounding is monotone.
     near = lanes_max(lanes_min(lo * c->near_scale[k], hi * c->near_scale[k]), near);
     far = lanes_min(lanes_max(lo * c->far_scale[k], hi * c->far_scale[k]), far);
-    from[k] = triangle->vertex[0][k] - c->o[k];
   }
-  const double *n = triangle->n;
-  *t = (n[0] * from[0] + n[1] * from[1] + n[2] * from[2]) /
-       (n[0] * c->d[0] + n[1] * c->d[1] + n[2] * c->d[2]);
-  lanes_some ahead = lanes_and(lanes_less(zero, *t), lanes_less(*t, zero + INFINITY));
-  lanes_some clipped = lanes_and(ahead, lanes_at_most(near, far));
+  lanes_some finite = lanes_and(lanes_less(zero, *t), lanes_less(*t, zero + INFINITY));
+  lanes_some clipped = lanes_and(finite, lanes_at_most(near, far));
   *t = lanes_min(far, lanes_max(near, *t));
   return lanes_and(clipped, lanes_and(lanes_less(zero, *t), lanes_less(*t, c->t_max)));
 }
@@ -119,8 +125,11 @@ static inline __attribute__((always_inline)) void test_all(const struct few *few
     lanes_some hit =
         lanes_and(accepts(&cones, &few->triangle[k], x, y, z), lanes_without_bit(packet->unmet, k));
     if (lanes_count(hit) == 0) continue;
-    lanes t;
-    hit = lanes_and(hit, meets(&cones, &few->triangle[k], &t));
+    lanes above, below, t;
+    hit = lanes_and(hit, ahead(&cones, &few->triangle[k], &above, &below));
+    if (lanes_count(hit) == 0) continue;
+    t = above / below;
+    hit = lanes_and(hit, clip(&cones, &few->triangle[k], &t));
     hit = lanes_and(hit, lanes_less(t, *best));
     *best = lanes_choose(hit, t, *best);
     *which = lanes_choose(hit, lanes_set(k), *which);

@@ -36,6 +36,7 @@ static inline lanes_some lanes_at_most(lanes a, lanes b) {
 }
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
 static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return a | b; }
+static inline lanes_some lanes_alike(lanes_some a, lanes_some b) { return (lanes_some) ~(a ^ b); }
 static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) {
   return _mm512_testn_epi64_mask(_mm512_loadu_si512(x), _mm512_set1_epi64((int64_t)1 << bit));
 }
@@ -98,6 +99,9 @@ static inline lanes_some lanes_less(lanes a, lanes b) { return _mm256_cmp_pd(a, 
 static inline lanes_some lanes_at_most(lanes a, lanes b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return _mm256_and_pd(a, b); }
 static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return _mm256_or_pd(a, b); }
+static inline lanes_some lanes_alike(lanes_some a, lanes_some b) {
+  return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_castpd_si256(a), _mm256_castpd_si256(b)));
+}
 static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) {
   __m256i b = _mm256_set1_epi64x((int64_t)1 << bit), a = _mm256_loadu_si256((const __m256i *)x);
   return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a, b), _mm256_setzero_si256()));
@@ -188,6 +192,8 @@ static inline lanes_some lanes_less(lanes a, lanes b) { return a[0] < b[0]; }
 static inline lanes_some lanes_at_most(lanes a, lanes b) { return a[0] <= b[0]; }
 static inline lanes_some lanes_and(lanes_some a, lanes_some b) { return a & b; }
 static inline lanes_some lanes_or(lanes_some a, lanes_some b) { return a | b; }
+// Where both are, or neither.
+static inline lanes_some lanes_alike(lanes_some a, lanes_some b) { return a == b; }
 static inline lanes_some lanes_without_bit(const uint64_t *x, int bit) { return !(*x >> bit & 1); }
 static inline lanes lanes_choose(lanes_some some, lanes a, lanes b) { return some ? a : b; }
 static inline lanes_some lanes_first(int n) { return n > 0; } // of the lanes
