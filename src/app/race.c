@@ -182,6 +182,13 @@ static bool read_times(const struct csv *csv, const struct group *group, int n_g
       if (!find_time(csv, g, cell->image[j], &method->time_s[k * method->n_points + j]))
         return problem_set(problem, "%s: has no time of cell %d after %" PRIu64 " iterations",
                            csv->path, cell->number, cell->image[j]);
+    for (int j = 1; j < method->n_points; j++)
+      if (!(method->time_s[k * method->n_points + j] >
+            method->time_s[k * method->n_points + j - 1]))
+        return problem_set(problem,
+                           "%s: cell %d took no longer for %" PRIu64 " iterations than for %" PRIu64
+                           ": set `images` further apart",
+                           csv->path, cell->number, cell->image[j], cell->image[j - 1]);
   }
   return true;
 }

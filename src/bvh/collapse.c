@@ -179,8 +179,8 @@ void binary_collapse(const struct binary *root, const uint32_t *order, struct bv
                      struct arena *arena, int threads, struct arena scratch) {
   struct collapse c = {.bvh = bvh};
   count_rows(root, &c);
-  assert(c.nodes < BVH_MAX_ROWS && c.blocks < BVH_MAX_ROWS / BVH_BLOCK * 4 &&
-         c.others < BVH_MAX_ROWS);
+  assert(c.nodes < BVH_MAX_ROWS && c.blocks < BVH_MAX_ROWS && c.others < BVH_MAX_ROWS);
+  assert((uint64_t)c.blocks * BVH_BLOCK < ROW_NONE); // bvh->lane
   bvh_allocate(bvh, c.nodes, c.blocks, c.others, arena);
   bvh->lane = arena_new(arena, uint32_t, bvh->scene->n_primitives);
   bvh->box = bounds_box(root->box);

@@ -13,7 +13,8 @@ static void triangle_set(const struct scene *scene, uint32_t primitive,
   }
 }
 
-// By a ray straight to the side of the normal, or against it.
+// By a ray straight to the side of the normal, or against it: of float vertices n.n is between
+// 1e-180 and 1e155, a double, so that it has the sign of any ray to that side.
 static bool is_left_behind(const struct scene *scene, const struct few *few, uint32_t left,
                            uint32_t other, enum few_side side) {
   const double *n = few->triangle[left].n;

@@ -6,9 +6,6 @@
 
 #include "numeric/lanes.h"
 
-// Coordinates for which no product of the tests overflows.
-static const double LARGEST = 0x1p60, SMALLEST = 0x1p-60;
-
 enum { MOST = 4096 }; // rays that are sorted at once
 
 // LANES rays.
@@ -29,8 +26,9 @@ static inline int axis_of(const struct ray *ray) {
   double largest = axis ? y : x;
   if (z > largest) axis = 2, largest = z;
   double w = CLIP_APERTURE * largest;
-  bool small = cone_abs(ray->o.x) <= LARGEST && cone_abs(ray->o.y) <= LARGEST &&
-               cone_abs(ray->o.z) <= LARGEST && largest >= SMALLEST && largest <= LARGEST;
+  bool small = cone_abs(ray->o.x) <= SEARCH_LARGEST && cone_abs(ray->o.y) <= SEARCH_LARGEST &&
+               cone_abs(ray->o.z) <= SEARCH_LARGEST && largest >= SEARCH_SMALLEST &&
+               largest <= SEARCH_LARGEST;
   return small && x > w && y > w && z > w ? axis : -1;
 }
 

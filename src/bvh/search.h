@@ -8,6 +8,11 @@
 #include "scene/shape/sphere.h"
 #include "scene/shape/triangle.h"
 
+// Coordinates and directions for which no product of the tests over- or underflows; search_one
+// knows the others, too.
+#define SEARCH_LARGEST 0x1p60
+#define SEARCH_SMALLEST 0x1p-60
+
 enum search_kind {
   SEARCH_CLOSEST,
   SEARCH_ANY,     // ends with the first hit

@@ -27,8 +27,6 @@ enum { POOL = 48, AHEAD = 8, MOST_WAITING = 256 };
 enum { QUEUE_HITS = BVH_NOTHING + 1, QUEUE_ODD, QUEUES };
 enum { BLOCK_FLOATS = sizeof(struct bvh_block) / sizeof(float) };
 
-static const double LARGEST = 0x1p60, SMALLEST = 0x1p-60;
-
 struct slot {
   float near_o[4], near_scale[4], far_o[4], far_scale[4];
   double shear_o[3], along_x, along_y; // in the shear's order of axes
@@ -48,6 +46,14 @@ struct slot {
   float waiting_near[MOST_WAITING];            // where their clips begin
   _Alignas(32) uint32_t waiting[MOST_WAITING]; // children, after the end: BVH_NOTHING
 };
+
+// pairs_t counts in doubles from o, slot_begin loads a ray's d and t_max together.
+_Static_assert(offsetof(struct slot, d) == offsetof(struct slot, o) + 4 * sizeof(double), "d");
+_Static_assert(offsetof(struct slot, near) == offsetof(struct slot, o) + 8 * sizeof(double),
+               "near");
+_Static_assert(offsetof(struct slot, far) == offsetof(struct slot, o) + 12 * sizeof(double), "far");
+_Static_assert(offsetof(struct ray, t_max) == offsetof(struct ray, d) + 3 * sizeof(double),
+               "t_max");
 
 struct pool {
   _Alignas(BVH_LINE) struct slot slot[POOL];
@@ -160,9 +166,10 @@ static inline enum begun slot_begin(struct slot *slot, const struct bvh *bvh) {
   __m256d size = _mm256_andnot_pd(sign, _mm256_blend_pd(d, _mm256_setzero_pd(), 8));
   __m256d largest = _mm256_max_pd(size, _mm256_permute4x64_pd(size, 0x4e));
   largest = _mm256_max_pd(largest, _mm256_permute_pd(largest, 5));
-  __m256d outside = _mm256_cmp_pd(distance, _mm256_set1_pd(LARGEST), _CMP_NLE_UQ);
-  outside = _mm256_or_pd(outside, _mm256_cmp_pd(size, _mm256_set1_pd(LARGEST), _CMP_NLE_UQ));
-  outside = _mm256_or_pd(outside, _mm256_cmp_pd(largest, _mm256_set1_pd(SMALLEST), _CMP_NGE_UQ));
+  __m256d outside = _mm256_cmp_pd(distance, _mm256_set1_pd(SEARCH_LARGEST), _CMP_NLE_UQ);
+  outside = _mm256_or_pd(outside, _mm256_cmp_pd(size, _mm256_set1_pd(SEARCH_LARGEST), _CMP_NLE_UQ));
+  outside =
+      _mm256_or_pd(outside, _mm256_cmp_pd(largest, _mm256_set1_pd(SEARCH_SMALLEST), _CMP_NGE_UQ));
   if (_mm256_movemask_pd(outside)) return ODD;
   __m256d w = _mm256_mul_pd(_mm256_set1_pd(CLIP_APERTURE), largest), one = _mm256_set1_pd(1);
   __m256d near = _mm256_div_pd(one, _mm256_add_pd(size, w));
@@ -247,29 +254,29 @@ static inline void visit_node(struct pool *pool, struct slot *slot, const struct
   go_to(pool, slot, slot->waiting[n]);
 }
 
-typedef double lanes __attribute__((vector_size(32)));
+typedef double quad __attribute__((vector_size(32)));
 
-static inline lanes corner(const struct bvh_block *block, int i, uint32_t bytes) {
+static inline quad corner(const struct bvh_block *block, int i, uint32_t bytes) {
   const char *at = (const char *)block->vertex[i] + bytes;
-  return (lanes)_mm256_cvtps_pd(_mm_load_ps((const float *)at));
+  return (quad)_mm256_cvtps_pd(_mm_load_ps((const float *)at));
 }
 
 // triangle_accepts
 static inline int block_accepts(const struct slot *slot, const struct bvh_block *block) {
-  lanes x[3], y[3];
+  quad x[3], y[3];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; i++) {
-    lanes z = corner(block, i, slot->axis[2]) - slot->shear_o[2];
+    quad z = corner(block, i, slot->axis[2]) - slot->shear_o[2];
     x[i] = (corner(block, i, slot->axis[0]) - slot->shear_o[0]) - slot->along_x * z;
     y[i] = (corner(block, i, slot->axis[1]) - slot->shear_o[1]) - slot->along_y * z;
   }
-  lanes e0 = x[1] * y[2] - y[1] * x[2];
-  lanes e1 = x[2] * y[0] - y[2] * x[0];
-  lanes e2 = x[0] * y[1] - y[0] * x[1];
+  quad e0 = x[1] * y[2] - y[1] * x[2];
+  quad e1 = x[2] * y[0] - y[2] * x[0];
+  quad e2 = x[0] * y[1] - y[0] * x[1];
   // Of vertices that are numbers all three are, of NaN vertices none.
   __m256d low = _mm256_min_pd((__m256d)e0, _mm256_min_pd((__m256d)e1, (__m256d)e2));
   __m256d high = _mm256_max_pd((__m256d)e0, _mm256_max_pd((__m256d)e1, (__m256d)e2));
-  __m256d accepted = (__m256d)(((lanes)low >= 0) | ((lanes)high <= 0));
+  __m256d accepted = (__m256d)(((quad)low >= 0) | ((quad)high <= 0));
   return _mm256_movemask_pd(accepted);
 }
 
@@ -519,7 +526,8 @@ run(const struct bvh *bvh, const struct queries *q, enum search_kind kind) {
 static bool fits(const struct bvh *bvh) {
   if ((BVH_WIDTH - 1) * (int)bvh->statistics.depth + 2 + BVH_WIDTH > MOST_WAITING) return false;
   for (int k = 0; k < 3; k++)
-    if (!((double)bvh->box.lo[k] >= -LARGEST && (double)bvh->box.hi[k] <= LARGEST)) return false;
+    if (!((double)bvh->box.lo[k] >= -SEARCH_LARGEST && (double)bvh->box.hi[k] <= SEARCH_LARGEST))
+      return false;
   return true;
 }
 #define RUN(bvh, queries, kind)                                                                    \

@@ -43,13 +43,14 @@ static inline lanes_numbers bucket_of(const struct grid *grid, const double *pos
 
 static void buckets(const struct grid *grid, const struct vec *position, int64_t n,
                     uint32_t *bucket) {
-  struct vec last[LANES] = {{0}};
+  struct vec last[LANES];
   int64_t j = 0;
   for (; j + LANES <= n; j += LANES) {
     lanes_numbers of = bucket_of(grid, &position[j].x);
     __builtin_memcpy(bucket + j, &of, sizeof of);
   }
-  for (int64_t k = j; k < n; k++) last[k - j] = position[k];
+  if (j == n) return;
+  for (int k = 0; k < LANES; k++) last[k] = position[j + k < n ? j + k : j];
   lanes_numbers of = bucket_of(grid, &last->x);
   __builtin_memcpy(bucket + j, &of, (size_t)(n - j) * sizeof *bucket);
 }

@@ -95,7 +95,7 @@ struct open_block {
 static void add_run(const struct plan *plan, const struct unit *unit, const struct worker *worker,
                     const char *folder, struct open_block *open) {
   const struct group_plan *group = &plan->group[unit->group];
-  if (worker->run % RUNS_PER_BLOCK == 1) {
+  if ((worker->run - 1) % RUNS_PER_BLOCK == 0) {
     open->arena = open->kept;
     open->block = block_new(group, unit->block, &open->arena);
     open->sum = block_begin(group, unit->block, &open->block, &open->arena);
