@@ -123,7 +123,7 @@ static bool meet(struct walk *walk, int j, int depth, struct eye_point *point) {
   struct bsdf bsdf;
   walk_bsdf(walk, j, &surface, &bsdf);
   double delta = bsdf.type ? bsdf_delta_probability(&bsdf, wo, TRANSPORT_RADIANCE) : 0;
-  if (walk->u[1][0][j] < delta) return walk_scatter(walk, j, &surface, &bsdf);
+  if (delta > 0 && walk->u[1][0][j] < delta) return walk_scatter(walk, j, &surface, &bsdf);
   stop(walk, j, &surface, &bsdf, 1 - delta, point);
   return false;
 }
