@@ -45,7 +45,7 @@ FLAGS.coverage = -fsanitize=fuzzer-no-link -fprofile-instr-generate -fcoverage-m
 CFLAGS := -std=c11 $(OPT) -g -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
   -ffp-contract=off -fno-builtin -fno-math-errno -fopenmp $(FLAGS.$(BUILD)) $(CFLAGS_EXTRA)
 CPPFLAGS := -Isrc -I.
-# NAME.lanes.c is compiled once for each of these (src/base/level.h).
+# NAME.lanes.c is compiled once for each of these (src/base/simd.h).
 LANES.scalar =
 LANES.avx2 = -mavx2
 LANES.avx512 = -mavx512f -mavx512vl -mavx512dq -mavx512bw
@@ -179,7 +179,7 @@ $(call object,$(plain_sources)): $(out)/obj/%.o: %.c $(gen)/flags | $(packages_b
 define lanes_rule
 $(lanes_sources:%.lanes.c=$(out)/obj/%.$1.o): $(out)/obj/%.$1.o: %.lanes.c $(gen)/flags | $(packages_build)
 	@mkdir -p $$(@D)
-	$$(call quiet,CC,$$<)$$(CC) $$(CPPFLAGS) $$(CFLAGS) $(LANES.$1) -DLEVEL=$1 -Wno-psabi -MMD -MP -c $$< -o $$@
+	$$(call quiet,CC,$$<)$$(CC) $$(CPPFLAGS) $$(CFLAGS) $(LANES.$1) -DSIMD=$1 -Wno-psabi -MMD -MP -c $$< -o $$@
 endef
 $(foreach level,$(levels),$(eval $(call lanes_rule,$(level))))
 

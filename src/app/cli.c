@@ -1,7 +1,7 @@
 #include "app/cli.h"
 
 #include "analysis/fit_methods.h"
-#include "base/level.h"
+#include "base/simd.h"
 #include "base/version.h"
 #include "experiment/keys.h"
 #include "pbrt/suggest.h"
@@ -268,7 +268,7 @@ int cli_main(int argc, char **argv) {
     print_command_help(command);
     return 0;
   }
-  level_chosen(); // dies if PHOTONLAB_SIMD names none
+  simd_chosen(); // dies if PHOTONLAB_SIMD names none
   struct arena arena = arena_reserve();
   struct cli cli = {.source = "command line", .arena = &arena};
   struct problem problem = {0};

@@ -2,9 +2,9 @@
 
 static void run(const struct bvh *bvh, enum search_kind kind, struct queries queries) {
   if (bvh->few)
-    LEVEL_TABLE(few_level)->run[kind](bvh, &queries);
+    SIMD_TABLE(few_level)->run[kind](bvh, &queries);
   else
-    LEVEL_TABLE(search_level)->run[kind](bvh, &queries);
+    SIMD_TABLE(search_level)->run[kind](bvh, &queries);
 }
 
 void bvh_closest(const struct bvh *bvh, const struct ray *rays, struct hit *hits, int n) {

@@ -29,6 +29,6 @@ struct few *few_new(const struct scene *, struct arena *);
 struct few_level {
   void (*run[3])(const struct bvh *, const struct queries *); // [enum search_kind]
 };
-LEVEL_TABLES(few_level);
+SIMD_TABLES(few_level);
 
 #endif

@@ -183,4 +183,4 @@ static void closest(const struct bvh *bvh, const struct queries *q) { run(bvh, q
 static void any(const struct bvh *bvh, const struct queries *q) { run(bvh, q, SEARCH_ANY); }
 static void blocker(const struct bvh *bvh, const struct queries *q) { run(bvh, q, SEARCH_BLOCKER); }
 
-const struct few_level LEVEL_NAME(few_level) = {{closest, any, blocker}};
+const struct few_level SIMD_NAME(few_level) = {{closest, any, blocker}};

@@ -3,7 +3,7 @@
 #ifndef BVH_SEARCH_H
 #define BVH_SEARCH_H
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "bvh/tree.h"
 #include "scene/shape/sphere.h"
 #include "scene/shape/triangle.h"
@@ -39,7 +39,7 @@ struct queries {
 struct search_level {
   void (*run[3])(const struct bvh *, const struct queries *); // [enum search_kind]
 };
-LEVEL_TABLES(search_level);
+SIMD_TABLES(search_level);
 
 // One ray, in double: the plain walk, which is right for any ray and any tree.
 void search_one(const struct bvh *, const struct queries *, int j, enum search_kind);

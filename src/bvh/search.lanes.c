@@ -554,4 +554,4 @@ static void blocker(const struct bvh *bvh, const struct queries *q) {
   for (int j = 0; j < q->n; j++) search_one(bvh, q, j, SEARCH_BLOCKER);
 }
 
-const struct search_level LEVEL_NAME(search_level) = {{closest, any, blocker}};
+const struct search_level SIMD_NAME(search_level) = {{closest, any, blocker}};

@@ -107,7 +107,7 @@ static int find(struct gather *gather, const struct grid *grid, const struct eye
   if (is_sided(gather, grid, point, depth, &sided)) {
     struct grid_range range[GRID_RANGES];
     int n = grid_ranges(grid, point->p, r, range);
-    return LEVEL_TABLE(gather_level)
+    return SIMD_TABLE(gather_level)
         ->find_on_side(grid, range, n, point->p, r * r, &sided, gather->distance2, gather->value);
   }
   int found = grid_find(grid, point->p, r, gather->photon, gather->distance2);

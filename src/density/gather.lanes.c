@@ -28,4 +28,4 @@ static int find_on_side(const struct grid *grid, const struct grid_range *range,
   return found;
 }
 
-const struct gather_level LEVEL_NAME(gather_level) = {find_on_side};
+const struct gather_level SIMD_NAME(gather_level) = {find_on_side};

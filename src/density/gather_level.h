@@ -17,6 +17,6 @@ struct gather_level {
                       double r2, const struct sided_bsdf *, double *distance2,
                       double *const value[3]);
 };
-LEVEL_TABLES(gather_level);
+SIMD_TABLES(gather_level);
 
 #endif

@@ -64,7 +64,7 @@ static void cell_of(struct vec p, double inverse_edge, int64_t cell[3]) {
 // The cells of the photons' box. Cells rise with coordinates, so its corners have them.
 static void find_box(struct grid *grid, const struct vec *position) {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-  LEVEL_TABLE(grid_level)->bound(position, grid->count, lo, hi);
+  SIMD_TABLE(grid_level)->bound(position, grid->count, lo, hi);
   for (int k = 0; k < 3; k++) {
     grid->lo[k] = cell_coordinate(lo[k], grid->inverse_edge);
     grid->hi[k] = cell_coordinate(hi[k], grid->inverse_edge);
@@ -133,7 +133,7 @@ static bool is_narrow(const struct grid *grid) {
 
 static void find_buckets(struct grid *grid, const struct vec *position) {
   if (is_narrow(grid)) {
-    LEVEL_TABLE(grid_level)->buckets(grid, position, grid->count, grid->bucket);
+    SIMD_TABLE(grid_level)->buckets(grid, position, grid->count, grid->bucket);
     return;
   }
   for (int64_t j = 0; j < grid->count; j++) {
@@ -241,7 +241,7 @@ int grid_find(const struct grid *grid, struct vec p, double r, uint32_t *at, dou
   struct grid_range range[GRID_RANGES];
   if (grid->count == 0) return 0;
   int n = grid_ranges(grid, p, r, range);
-  return LEVEL_TABLE(grid_level)->within(grid, range, n, p, r * r, at, distance2);
+  return SIMD_TABLE(grid_level)->within(grid, range, n, p, r * r, at, distance2);
 }
 
 // ---- cells that are seen ----

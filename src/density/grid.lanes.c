@@ -73,4 +73,4 @@ static int within(const struct grid *grid, const struct grid_range *range, int n
   return found;
 }
 
-const struct grid_level LEVEL_NAME(grid_level) = {bound, buckets, within};
+const struct grid_level SIMD_NAME(grid_level) = {bound, buckets, within};

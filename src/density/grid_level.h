@@ -2,7 +2,7 @@
 #ifndef DENSITY_GRID_LEVEL_H
 #define DENSITY_GRID_LEVEL_H
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "density/grid.h"
 
 // Of sorted photons: begin <= at < end.
@@ -24,6 +24,6 @@ struct grid_level {
   int (*within)(const struct grid *, const struct grid_range *, int n, struct vec p, double r2,
                 uint32_t *at, double *distance2);
 };
-LEVEL_TABLES(grid_level);
+SIMD_TABLES(grid_level);
 
 #endif

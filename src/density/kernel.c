@@ -1,10 +1,10 @@
 #include "density/kernel.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 
 #include <string.h>
 
-LEVEL_TABLES(kernel_level);
+SIMD_TABLES(kernel_level);
 
 const struct kernel *kernel_find(const char *name) {
   for (int k = 0; k < n_kernels; k++)
@@ -13,7 +13,7 @@ const struct kernel *kernel_find(const char *name) {
 }
 
 int kernel_weigh(const struct kernel *kernel, const double *distance2, double r, double *w, int n) {
-  return LEVEL_TABLE(kernel_level)->row[kernel - kernels].weigh(distance2, r, w, n);
+  return SIMD_TABLE(kernel_level)->row[kernel - kernels].weigh(distance2, r, w, n);
 }
 
 double kernel_value(const struct kernel *kernel, int d, double t2) {

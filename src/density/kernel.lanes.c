@@ -1,7 +1,7 @@
 // The kernels. To add one, add a row: its shape on |u|^2 in [0, 1) and its constants.
 #include "density/kernel.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/elementary.h"
 #include "numeric/lanes_exp.h"
 
@@ -168,5 +168,5 @@ static const struct kernel rows[] = {
 };
 // clang-format on
 
-LEVEL_TABLES(kernel_level);
-const struct kernel_level LEVEL_NAME(kernel_level) = {rows, sizeof rows / sizeof rows[0]};
+SIMD_TABLES(kernel_level);
+const struct kernel_level SIMD_NAME(kernel_level) = {rows, sizeof rows / sizeof rows[0]};

@@ -39,7 +39,7 @@ void rng_fill(struct rng_key key, uint64_t iteration, const uint64_t *path, int 
   uint64_t all = iteration;
   for (int j = 0; j < n; j++) all |= path[j];
   assert(all >> 48 == 0);
-  int done = LEVEL_TABLE(rng_level)->fill(key, iteration, path, n, pair, u0, u1);
+  int done = SIMD_TABLE(rng_level)->fill(key, iteration, path, n, pair, u0, u1);
   for (int j = done; j < n; j++) fill_one(key, iteration, path[j], pair, &u0[j], &u1[j]);
 }
 

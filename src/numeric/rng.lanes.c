@@ -62,4 +62,4 @@ static int fill(struct rng_key key, uint64_t iteration, const uint64_t *path, in
 }
 #endif
 
-const struct rng_level LEVEL_NAME(rng_level) = {fill};
+const struct rng_level SIMD_NAME(rng_level) = {fill};

@@ -2,7 +2,7 @@
 #ifndef NUMERIC_RNG_LEVEL_H
 #define NUMERIC_RNG_LEVEL_H
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/rng.h"
 
 enum { RNG_ROUNDS = 10 };
@@ -16,6 +16,6 @@ struct rng_level {
   int (*fill)(struct rng_key key, uint64_t iteration, const uint64_t *path, int n, uint32_t pair,
               double *u0, double *u1);
 };
-LEVEL_TABLES(rng_level);
+SIMD_TABLES(rng_level);
 
 #endif

@@ -3,5 +3,5 @@
 #include "numeric/sum_level.h"
 
 double sum_products(const double *a, const double *b, int n) {
-  return LEVEL_TABLE(sum_level)->products(a, b, n);
+  return SIMD_TABLE(sum_level)->products(a, b, n);
 }

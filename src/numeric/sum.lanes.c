@@ -14,4 +14,4 @@ static double products(const double *a, const double *b, int n) {
   return lanes_total(part);
 }
 
-const struct sum_level LEVEL_NAME(sum_level) = {products};
+const struct sum_level SIMD_NAME(sum_level) = {products};

@@ -2,11 +2,11 @@
 #ifndef NUMERIC_SUM_LEVEL_H
 #define NUMERIC_SUM_LEVEL_H
 
-#include "base/level.h"
+#include "base/simd.h"
 
 struct sum_level {
   double (*products)(const double *a, const double *b, int n);
 };
-LEVEL_TABLES(sum_level);
+SIMD_TABLES(sum_level);
 
 #endif

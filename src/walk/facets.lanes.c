@@ -86,4 +86,4 @@ static void sample(struct facets *facets, int n) {
   for (int j = 0; j < n; j += LANES) sample_lanes(facets, j);
 }
 
-const struct facets_level LEVEL_NAME(facets_level) = {sample};
+const struct facets_level SIMD_NAME(facets_level) = {sample};

@@ -256,7 +256,7 @@ int walk_sample_facets(struct walk *walk, int first) {
     facets->u[0][n] = walk->u[0][0][j], facets->u[1][n] = walk->u[0][1][j];
     walk->block.row[k] = (int8_t)n++;
   }
-  LEVEL_TABLE(facets_level)->sample(facets, n);
+  SIMD_TABLE(facets_level)->sample(facets, n);
   return count;
 }
 

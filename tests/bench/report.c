@@ -1,6 +1,6 @@
 #include "tests/bench/report.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "base/version.h"
 
 #include <stdlib.h>
@@ -39,7 +39,7 @@ void report_machine(FILE *out, const char *prefix) {
   fprintf(out, "%sprocessor: %s, %ld cores\n", prefix, name, sysconf(_SC_NPROCESSORS_ONLN));
   fprintf(out, "%scompiler: %s\n", prefix, photonlab_compiler);
   fprintf(out, "%sflags: %s\n", prefix, photonlab_flags);
-  fprintf(out, "%sSIMD level: %s\n", prefix, level_names[level_chosen()]);
+  fprintf(out, "%sSIMD level: %s\n", prefix, simd_names[simd_chosen()]);
   fprintf(out, "%sprogram: %s, %s\n", prefix, photonlab_version, date);
   fprintf(out, "%scalibration: %.2f ms, the unit of time of `calibrated`\n", prefix,
           1e3 * fastest_calibration());

@@ -1,8 +1,8 @@
 // The tree against the definition: the smallest (t, primitive) over all primitives, bit for bit, on
 // scenes and rays chosen to be hard; and closed meshes, which no ray may leave.
-#include "base/level.h"
-#include "scene/skip.h"
+#include "base/simd.h"
 #include "bvh/tree.h"
+#include "scene/skip.h"
 #include "tests/unit/meshes.h"
 
 #include <setjmp.h>
@@ -319,15 +319,15 @@ static void check_blockers(const struct scene *scene, const struct bvh *bvh, con
 // At every SIMD level.
 static void check_equal(const struct mesh *m, const struct bvh *bvh, const struct ray *rays, int n,
                         struct hit *expected) {
-  enum level best = level_best();
+  enum simd best = simd_best();
   assert_true(n <= MOST_RAYS);
   bvh_closest_brute_force(&m->scene, rays, expected, n);
   for (int level = 0; level <= (int)best; level++) {
-    level_choose((enum level)level);
+    simd_choose((enum simd)level);
     check_closest(bvh, rays, n, expected);
     check_blockers(&m->scene, bvh, rays, n, expected);
   }
-  level_choose(best);
+  simd_choose(best);
 }
 
 // With `n` rays of each kind; more than are in flight at once (search.lanes.c) also take the places

@@ -14,8 +14,8 @@ static void a_block_is_what_the_material_samples_at_every_level(void **state) {
   static uint64_t path[3 * FACETS];
   static double u[4][3 * FACETS];
   for (int j = 0; j < 3 * FACETS; j++) path[j] = (uint64_t)j;
-  for (int level = 0; level <= (int)level_best(); level++) {
-    level_choose((enum level)level);
+  for (int level = 0; level <= (int)simd_best(); level++) {
+    simd_choose((enum simd)level);
     for (int n = 0; n <= FACETS; n++) {
       static struct facets facets;
       struct vec d[FACETS], ng[FACETS];
@@ -32,7 +32,7 @@ static void a_block_is_what_the_material_samples_at_every_level(void **state) {
         facets.u[0][j] = j % 11 == 0 ? 0 : u[0][2 * FACETS + j];
         facets.u[1][j] = j % 3 == 0 ? (j % 16) / 16.0 : u[1][2 * FACETS + j]; // octants' ends
       }
-      LEVEL_TABLE(facets_level)->sample(&facets, n);
+      SIMD_TABLE(facets_level)->sample(&facets, n);
       for (int j = 0; j < n; j++) {
         struct bsdf_sample want;
         bsdf.n = bsdf.ng = ng[j];

@@ -1,7 +1,7 @@
 // The gather, bit for bit: at every SIMD level the sum of theory 1.1 over the photons of a disc, in
 // the order and shape that grid.h and numeric/sum.h say, written down here without them.
 #include "density/gather.h"
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/rng.h"
 #include "numeric/sum.h"
 
@@ -167,15 +167,15 @@ static int64_t check_points(const struct bsdf_type *type, bool bent, unsigned le
 static void gathers_are_the_sum_at_every_level(void **state) {
   (void)state;
   const struct bsdf_type *const types[] = {&sided, &sided_one_by_one, &glossy};
-  for (int level = 0; level <= (int)level_best(); level++) {
-    level_choose((enum level)level);
+  for (int level = 0; level <= (int)simd_best(); level++) {
+    simd_choose((enum simd)level);
     for (int t = 0; t < 3; t++) {
       assert_true(check_points(types[t], false, 0) > 100 * POINTS / 10);
       check_points(types[t], true, 0);
       check_points(types[t], false, LEFT_OUT);
     }
   }
-  level_choose(level_best());
+  simd_choose(simd_best());
 }
 
 static void check_count(const struct grid *own, int n, bool transmits, struct arena scratch) {
@@ -202,13 +202,13 @@ static void discs_of_any_number_of_photons(void **state) {
     some.position = arena_new(&scratch, struct vec, n);
     for (int j = 0; j < n; j++) some.position[j] = vec(0.01 * j, 0, j % 3 ? 0 : -1e-3);
     grid_build(&own, &some, 1, &scratch);
-    for (int level = 0; level <= (int)level_best(); level++) {
-      level_choose((enum level)level);
+    for (int level = 0; level <= (int)simd_best(); level++) {
+      simd_choose((enum simd)level);
       check_count(&own, n, true, scratch);
       check_count(&own, n, false, scratch);
     }
   }
-  level_choose(level_best());
+  simd_choose(simd_best());
 }
 
 int main(void) {

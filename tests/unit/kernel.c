@@ -1,7 +1,7 @@
 // Kernels: closed forms against quadrature and against the table of theory 1.2.
 #include "density/kernel.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/elementary.h"
 
 #include <math.h>
@@ -161,10 +161,10 @@ static void shapes_have_the_same_bits_at_every_level(void **state) {
   for (int j = 0; j < N; j++) d2[j] = 0.55 * j / N;
   d2[1] = r * r, d2[2] = INFINITY, d2[3] = NAN;
   for (int k = 0; k < n_kernels; k++) {
-    level_choose(LEVEL_SCALAR);
+    simd_choose(SIMD_SCALAR);
     kernel_weigh(&kernels[k], d2, r, scalar, N);
-    for (int level = 0; level <= (int)level_best(); level++) {
-      level_choose((enum level)level);
+    for (int level = 0; level <= (int)simd_best(); level++) {
+      simd_choose((enum simd)level);
       int within = kernel_weigh(&kernels[k], d2, r, w, N), expected = 0;
       for (int j = 0; j < N; j++) {
         double t2 = d2[j] * (1 / (r * r)), plain = formula(kernels[k].name, t2);

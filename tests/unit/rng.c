@@ -85,15 +85,15 @@ static void every_level_equals_philox_for_every_length_and_counter(void **state)
   struct rng_key key = key_of_test(__func__, 1);
   uint64_t path[MOST];
   for (int j = 0; j < MOST; j++) path[j] = j % 3 ? (0xfedcba987654 >> j) + (uint64_t)j : last48 - j;
-  for (int level = 0; level <= (int)level_best(); level++) {
-    level_choose((enum level)level);
+  for (int level = 0; level <= (int)simd_best(); level++) {
+    simd_choose((enum simd)level);
     for (int n = 0; n <= MOST; n++)
       for (int i = 0; i < 6; i++)
         for (int p = 0; p < 3; p++) {
           double u0[MOST + 1], u1[MOST + 1], want[2];
           for (int j = 0; j <= MOST; j++) u0[j] = u1[j] = 2.385;
-          int done = LEVEL_TABLE(rng_level)->fill(key, iterations[i], path, n, pairs[p], u0, u1);
-          assert_in_range(done, n < 16 || level == LEVEL_SCALAR ? 0 : 16, n);
+          int done = SIMD_TABLE(rng_level)->fill(key, iterations[i], path, n, pairs[p], u0, u1);
+          assert_in_range(done, n < 16 || level == SIMD_SCALAR ? 0 : 16, n);
           for (int j = 0; j < done; j++) {
             expected_pair(key, iterations[i], path[j], pairs[p], want);
             assert_true(u0[j] == want[0] && u1[j] == want[1]);
@@ -101,7 +101,7 @@ static void every_level_equals_philox_for_every_length_and_counter(void **state)
           assert_true(u0[done] == 2.385 && u1[done] == 2.385); // nothing behind the end
         }
   }
-  print_message("highest level: %s\n", level_names[level_best()]);
+  print_message("highest level: %s\n", simd_names[simd_best()]);
 }
 
 // The level's blocks and the rest, whatever n.

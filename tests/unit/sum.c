@@ -1,7 +1,7 @@
 // Sums have one shape.
 #include "numeric/sum.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/rng.h"
 
 #include <math.h>
@@ -69,8 +69,8 @@ static void products_have_the_shape_at_every_level(void **state) {
   draw("a", a);
   draw("b", b);
   for (int j = 0; j < N; j++) product[j] = a[j] * b[j];
-  for (int level = 0; level <= (int)level_best(); level++) {
-    level_choose((enum level)level);
+  for (int level = 0; level <= (int)simd_best(); level++) {
+    simd_choose((enum simd)level);
     for (int n = 0; n <= N; n++) assert_true(sum_products(a, b, n) == sum_array(product, n));
   }
 }

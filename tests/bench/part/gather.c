@@ -1,6 +1,6 @@
 #include "tests/bench/measure.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "estimate/photon_map.h"
 
 #include <math.h>
@@ -14,20 +14,20 @@ struct job {
   struct measurement measure;
   struct photon_map *map;
   struct arena *arena;
-  enum level level;
+  enum simd level;
   double *frame, r[TEN];
   int64_t *count; // [n_points][n_estimators] photons found
 };
 
 static void gather(void *data, int repetition) {
   struct job *job = data;
-  enum level chosen = level_chosen();
+  enum simd chosen = simd_chosen();
   (void)repetition;
-  level_choose(job->level);
+  simd_choose(job->level);
   memset(job->frame, 0, (size_t)photon_map_frame(&job->measure) * sizeof *job->frame);
   for (int j = 0; j < job->measure.n_points; j++)
     photon_map_gather(job->map, j, job->r, &job->count[j * job->measure.n_estimators], job->frame);
-  level_choose(chosen);
+  simd_choose(chosen);
 }
 
 static uint64_t hash(const void *data) {
@@ -38,11 +38,11 @@ static uint64_t hash(const void *data) {
 static void build(void *data, int repetition) {
   struct job *job = data;
   struct photon_field *field = &job->map->field[ON_SURFACE];
-  enum level chosen = level_chosen();
+  enum simd chosen = simd_chosen();
   (void)repetition;
-  level_choose(job->level);
+  simd_choose(job->level);
   grid_build(&field->grid, &field->photons, job->r[0], job->arena);
-  level_choose(chosen);
+  simd_choose(chosen);
 }
 
 static uint64_t hash_grid(const void *data) {
@@ -56,7 +56,7 @@ static struct job *job_new(const struct bench_scene *scene, bool grid, struct ar
   job->measure = measure_of(scene, false);
   job->measure.keep_points = true;
   for (int e = 0; e < TEN; e++) job->r[e] = 0.05 * (1 - 0.05 * (e / 2));
-  job->level = level_chosen();
+  job->level = simd_chosen();
   job->arena = arena_new(arena, struct arena, 1);
   *job->arena = arena_reserve();
   job->map = photon_map_new(&job->measure, job->arena);
@@ -115,7 +115,7 @@ static double found(const struct job *job) {
 }
 
 // The same by another level.
-static struct job *at_level(const struct job *job, enum level level, const char *name,
+static struct job *at_level(const struct job *job, enum simd level, const char *name,
                             struct arena *arena) {
   struct job *other = arena_new(arena, struct job, 1);
   *other = *job;
@@ -189,9 +189,9 @@ static void add(struct bench *bench, const struct bench_scene *scene) {
              points);
   add_grid(bench, job, grid, NULL);
   for (int level = (int)job->level - 1; level >= 0; level--) {
-    struct job *other = at_level(job, (enum level)level, scene->name, arena);
-    add_points(bench, other, arena_format(arena, "%s/%s", points, level_names[level]), points);
-    add_grid(bench, other, arena_format(arena, "%s/%s", grid, level_names[level]), grid);
+    struct job *other = at_level(job, (enum simd)level, scene->name, arena);
+    add_points(bench, other, arena_format(arena, "%s/%s", points, simd_names[level]), points);
+    add_grid(bench, other, arena_format(arena, "%s/%s", grid, simd_names[level]), grid);
   }
 }
 

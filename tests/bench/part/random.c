@@ -1,25 +1,25 @@
 #include "tests/bench/bench.h"
 
-#include "base/level.h"
+#include "base/simd.h"
 #include "numeric/rng.h"
 
 enum { N = 4096, PAIRS = 256 };
 
 static struct random {
   uint64_t path[N];
-  enum level level;
+  enum simd level;
   double u[2][N];
-} state[LEVELS];
+} state[SIMD_LEVELS];
 
 static void fill(void *data, int repetition) {
   struct random *random = data;
   struct rng_key key = rng_key(1, 1, RNG_TEST);
   (void)repetition;
-  enum level chosen = level_chosen();
-  level_choose(random->level);
+  enum simd chosen = simd_chosen();
+  simd_choose(random->level);
   for (uint32_t pair = 0; pair < PAIRS; pair++)
     rng_fill(key, 1, random->path, N, pair, random->u[0], random->u[1]);
-  level_choose(chosen);
+  simd_choose(chosen);
 }
 
 static uint64_t hash(const void *data) {
@@ -50,13 +50,13 @@ static bool equals_single(const struct random *random) {
 }
 
 static void rows(struct bench *bench) {
-  for (int level = 0; level <= (int)level_best(); level++) {
+  for (int level = 0; level <= (int)simd_best(); level++) {
     struct random *random = &state[level];
     for (int j = 0; j < N; j++) random->path[j] = (uint64_t)j;
-    random->level = (enum level)level;
+    random->level = (enum simd)level;
     fill(random, 0);
-    bench_check(equals_single(random), "a batch and single paths differ", level_names[level]);
-    add(bench, random, level_names[level], level ? level_names[0] : NULL);
+    bench_check(equals_single(random), "a batch and single paths differ", simd_names[level]);
+    add(bench, random, simd_names[level], level ? simd_names[0] : NULL);
   }
 }
 
