@@ -81,7 +81,7 @@ static void choose_buckets(struct grid *grid) {
   int most = 3 * LEAST_BITS;
   while (INT64_C(1) << most < 4 * grid->count) most++;
   for (int k = 0; k < 3; k++) {
-    uint64_t cells = (uint64_t)(grid->hi[k] - grid->lo[k]) + 1;
+    uint64_t cells = (uint64_t)grid->hi[k] - (uint64_t)grid->lo[k] + 1;
     for (grid->bits[k] = 0; grid->bits[k] < most && UINT64_C(1) << grid->bits[k] < cells;)
       grid->bits[k]++;
   }
@@ -93,7 +93,7 @@ static void choose_buckets(struct grid *grid) {
 }
 
 static uint32_t wrap(const struct grid *grid, int k, int64_t cell) {
-  return (uint32_t)(cell - grid->lo[k]) & ((1u << grid->bits[k]) - 1);
+  return (uint32_t)((uint64_t)cell - (uint64_t)grid->lo[k]) & ((1u << grid->bits[k]) - 1);
 }
 
 // Of the first bucket of a row of cells along x.
@@ -126,7 +126,7 @@ static void reserve_buckets(struct grid *grid, struct arena *arena) {
 static bool is_narrow(const struct grid *grid) {
   for (int k = 0; k < 3; k++)
     if (grid->lo[k] < -(INT64_C(1) << 51) || grid->hi[k] > INT64_C(1) << 51 ||
-        grid->hi[k] - grid->lo[k] >= INT64_C(1) << 31)
+        (uint64_t)grid->hi[k] - (uint64_t)grid->lo[k] >= UINT64_C(1) << 31)
       return false;
   return true;
 }

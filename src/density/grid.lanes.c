@@ -3,7 +3,7 @@
 
 // Three vectors hold LANES positions, x y z x y z ...
 static void bound(const struct vec *position, int64_t n, double lo[3], double hi[3]) {
-  const double *x = &position->x;
+  const double *x = (const double *)position;
   lanes least[3], most[3];
   double at_lanes[2][3 * LANES];
   int64_t j = 0;
