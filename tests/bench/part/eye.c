@@ -46,6 +46,7 @@ static uint64_t hash_frame(const void *data) {
 static struct job *job_new(struct measurement measure, struct arena *arena) {
   struct job *job = arena_new(arena, struct job, 1);
   job->measure = measure;
+  job->measure.keep_points = true;
   job->map = photon_map_new(&job->measure, arena);
   job->frame = arena_new(arena, double, photon_map_frame(&measure));
   see(job, 0);
