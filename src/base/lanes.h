@@ -1,6 +1,7 @@
 // The vector vocabulary of NAME.lanes.c: as many doubles at a time as the level's registers hold.
-// What the compiler lets be written as arithmetic (+ - * / < & |) is; here is the rest. Every lane
-// is the scalar operation, so no bit depends on the level.
+// What the compiler lets be written as arithmetic (+ - * /) is; here is the rest. Every lane is the
+// scalar operation, so no bit depends on the level. Comparisons are numeric/lanes.h's: gcc 12 folds
+// masks of vectors of one lane wrongly.
 #ifndef BASE_LANES_H
 #define BASE_LANES_H
 
@@ -21,7 +22,6 @@ enum { LANES = 1 };
 #endif
 
 typedef double lanes __attribute__((vector_size(8 * LANES)));
-typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); // of a lane: all bits or none
 
 static inline lanes lanes_set(double x) { return x - (lanes){0}; }
 
@@ -42,15 +42,6 @@ static inline lanes lanes_sqrt(lanes a) {
   for (int j = 0; j < LANES; j++) a[j] = sqrt(a[j]);
   return a;
 #endif
-}
-
-// mask ? a : b
-static inline lanes lanes_select(lanes_mask mask, lanes a, lanes b) {
-  return (lanes)((mask & (lanes_mask)a) | (~mask & (lanes_mask)b));
-}
-
-static inline lanes lanes_negate_if(lanes_mask mask, lanes a) {
-  return (lanes)((lanes_mask)a ^ (mask & INT64_MIN));
 }
 
 #endif

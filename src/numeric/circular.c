@@ -7,6 +7,9 @@
 #include <stdint.h>
 #include <string.h>
 
+#define NUMBER double
+#include "numeric/circular_series.h"
+
 // pi/2 in three parts; the first two have 36 bits, so that their products with k < 2^17 are exact.
 #define HALF_PI_1 0x1.921fb54440000p+0
 #define HALF_PI_2 0x1.68c234c4c0000p-39
@@ -14,35 +17,9 @@
 
 static const struct pair two_pi = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
 
-// Taylor series for |r| <= pi/4, errors below 2^-62.
-static double sine_of(struct pair r) {
-  double z = r.hi * r.hi;
-  double p = 1.0 / 355687428096000; // 17!
-  p = p * z - 1.0 / 1307674368000;
-  p = p * z + 1.0 / 6227020800;
-  p = p * z - 1.0 / 39916800;
-  p = p * z + 1.0 / 362880;
-  p = p * z - 1.0 / 5040;
-  p = p * z + 1.0 / 120;
-  p = p * z - 1.0 / 6;
-  return r.hi + (r.hi * z * p + (r.lo - 0.5 * z * r.lo));
-}
-
-static double cosine_of(struct pair r) {
-  double z = r.hi * r.hi, half = 0.5 * z, w = 1 - half;
-  double p = 1.0 / 20922789888000; // 16!
-  p = p * z - 1.0 / 87178291200;
-  p = p * z + 1.0 / 479001600;
-  p = p * z - 1.0 / 3628800;
-  p = p * z + 1.0 / 40320;
-  p = p * z - 1.0 / 720;
-  p = p * z + 1.0 / 24;
-  return w + (((1 - w) - half) + (z * z * p - r.hi * r.lo));
-}
-
 // Of k quarter turns and r more, |r| <= pi/4 (a rounding more does no harm).
 static void sincos_quarter(int k, struct pair r, double *sine, double *cosine) {
-  double s = sine_of(r), c = cosine_of(r);
+  double s = sine_series(r.hi, r.lo), c = cosine_series(r.hi, r.lo);
   int quarter = k & 3;
   *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
   *cosine = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;

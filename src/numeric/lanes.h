@@ -185,7 +185,8 @@ static inline lanes lanes_max(lanes a, lanes b) { return lanes_set(a[0] > b[0] ?
 static inline lanes_numbers lanes_to_numbers(lanes a) { return (uint32_t)a[0]; } // 0 <= a < 2^31
 // 2^k of whole numbers -1022 <= k <= 1023.
 static inline lanes lanes_power_of_two(lanes k) {
-  return (lanes)((lanes_mask){((int64_t)k[0] + 1023) << 52});
+  int64_t bits = ((int64_t)k[0] + 1023) << 52;
+  return lanes_load((const double *)&bits);
 }
 
 static inline lanes_some lanes_less(lanes a, lanes b) { return a[0] < b[0]; }
